@@ -285,7 +285,7 @@ const LINES: [RGBColor; 4] =
     [RGBColor(112, 90, 200), RGBColor(0, 135, 190), RGBColor(0, 150, 110), RGBColor(150, 130, 60)];
 
 /// The stripes of a line, which are as wide as a finger.
-const STRIPES: usize = 8;
+const STRIPES: usize = 6;
 
 /// More names of one value are said as all others.
 const MOST_NAMED: usize = 3;
@@ -438,8 +438,8 @@ mod tests {
             let place = |distance: f64| (10.0 * -distance.log10()).round() as i32;
             columns(&slope, place, [0, 9]).into_iter().map(|hover| hover.text).collect::<Vec<_>>()
         };
-        assert_eq!(stripes(None), ["1e0 to 1e-56: x 1.0e0"]);
-        assert_eq!(stripes(Some(17)), ["1e0 to 1e-16: x 1.0e0", "1e-24 to 1e-56: x 1.0e0"]);
+        assert_eq!(stripes(None), ["1e0 to 1e-55: x 1.0e0"]);
+        assert_eq!(stripes(Some(17)), ["1e0 to 1e-11: x 1.0e0", "1e-22 to 1e-55: x 1.0e0"]);
         let nothing = Slope { distance: vec![], names: vec![], values: vec![], scales: no_scales() };
         assert!(columns(&nothing, |_| 0, [0, 9]).is_empty());
     }
