@@ -208,14 +208,13 @@ impl<'s> Landscape<'s> {
         Some(self.scales.deviations(&entries, Some(&errors)))
     }
 
-    /// The same where doubles give out, with enclosures: what stays infinite is not observable there, or not told by these either.
+    /// The same with enclosures, which have their digits next to singular sets and poles, where doubles may have none and not know it. What is infinite then is not
+    /// observable there, or not told by these either.
     fn precise_deviations(&self, values: &HashMap<Symbol, f64>) -> Deviations {
         let mut found = self.deviations(values)?;
-        if found.iter().any(|deviation| deviation.is_infinite())
-            && let Some(enclosed) = self.enclosed_deviations(values)
-        {
-            let hidden = found.iter_mut().zip(enclosed).filter(|(own, _)| own.is_infinite());
-            hidden.for_each(|(own, enclosed)| *own = enclosed.unwrap_or(f64::INFINITY));
+        if let Some(enclosed) = self.enclosed_deviations(values) {
+            let told = found.iter_mut().zip(enclosed);
+            told.for_each(|(own, enclosed)| *own = enclosed.unwrap_or(*own));
         }
         Some(found)
     }
