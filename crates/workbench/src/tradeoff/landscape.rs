@@ -188,8 +188,8 @@ impl<'s> Landscape<'s> {
                 let (middles, errors): (Vec<f64>, Vec<f64>) = all.iter().map(|v| (v.mid(), v.rad())).unzip();
                 Some([matrix(&middles), matrix(&errors)])
             }
-            // next to a pole: nothing is known of the errors
-            None => Some([matrix(&found), matrix(&vec![0.0; found.len()])]),
+            // next to a pole nothing is known of the errors, so that nothing is told
+            None => Some([matrix(&found), matrix(&vec![f64::INFINITY; found.len()])]),
         }
     }
 
