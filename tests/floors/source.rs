@@ -44,19 +44,15 @@ impl Crate {
     pub fn read(folder: &Path) -> Crate {
         let mut found = Crate::default();
         let mut tests = BTreeSet::new();
-        let mut open = vec![(folder.to_owned(), ModulePath::new())];
-        while let Some((place, path)) = open.pop() {
-            for entry in std::fs::read_dir(&place).unwrap() {
-                let entry = entry.unwrap().path();
-                let name = entry.file_stem().unwrap().to_str().unwrap().to_owned();
-                let own = || path.iter().cloned().chain([name.clone()]).collect::<ModulePath>();
-                if entry.is_dir() {
-                    open.push((entry, own()));
-                } else if entry.extension().is_some_and(|extension| extension == "rs") && name != "main" {
-                    let path = if name == "mod" || name == "lib" { path.clone() } else { own() };
-                    tests.extend(found.add(path, &std::fs::read_to_string(&entry).unwrap()));
-                }
+        for (file, text) in files(folder) {
+            let inside = file.strip_prefix(folder).unwrap().with_extension("");
+            let mut path: ModulePath = inside.iter().map(|name| name.to_str().unwrap().to_owned()).collect();
+            match path.last().map(String::as_str) {
+                Some("main") => continue,
+                Some("mod" | "lib") => drop(path.pop()),
+                _ => {}
             }
+            tests.extend(found.add(path, &text));
         }
         found.files.retain(|path, _| !tests.iter().any(|test: &ModulePath| path.starts_with(test)));
         found

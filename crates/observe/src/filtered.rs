@@ -44,21 +44,21 @@ impl<'t, 'a> Filtered<'t, 'a> {
         DVector::from_fn(self.task.full.outputs.len(), |output, _| own(output))
     }
 
-    /// Counts the innovation of a sample.
-    pub fn compare(&mut self, innovation: &Innovation) {
+    /// Counts the innovation of a sample, and gives it in deviations of its own; none where its covariance is not known.
+    pub fn compare(&mut self, innovation: &Innovation) -> Option<DVector<f64>> {
         if innovation.covariance.iter().any(|value| !value.is_finite()) {
-            return;
+            return None;
         }
-        let Some(root) = Cholesky::new(innovation.covariance.clone()) else { return };
-        self.chi_square += innovation.residual.dot(&root.solve(&innovation.residual));
-        self.degrees += innovation.residual.len();
+        let root = Cholesky::new(innovation.covariance.clone())?;
+        let own = root.l().solve_lower_triangular(&innovation.residual)?;
+        self.chi_square += own.norm_squared();
+        self.degrees += own.len();
+        Some(own)
     }
 
     /// Counts the innovation of a sample, of a filter whose innovations are white where all is right.
     pub fn compare_white(&mut self, innovation: &Innovation) {
-        self.compare(innovation);
-        let own = Cholesky::new(innovation.covariance.clone())
-            .and_then(|root| root.l().solve_lower_triangular(&innovation.residual));
+        let own = self.compare(innovation);
         if let (Some(own), Some(before)) = (&own, &self.before)
             && own.len() == before.len()
         {

@@ -20,8 +20,8 @@ pub struct Seam {
 }
 
 impl Seam {
-    /// Of two estimates of the same states at a time with the standard deviations of each, where nothing is known of how their errors hang together: no difference has a
-    /// deviation above the sum of both. The worst state is told, its probability times the number of states (Bonferroni). None where no state has a deviation on both sides.
+    /// Of two estimates of the same states at a time with the standard deviations of each, where the correlation of their errors is not known: no difference has a
+    /// deviation above the sum of both. No state is an angle. The worst one is told, its probability times the number of states (Bonferroni). None where no state has a deviation on both sides.
     pub fn of_any_correlation(time: f64, before: [&[f64]; 2], after: [&[f64]; 2]) -> Option<Seam> {
         let [before, before_deviations] = before;
         let [after, after_deviations] = after;
@@ -141,8 +141,8 @@ impl Innovations {
         let whiteness = (counted >= LEAST_PRODUCTS).then(|| {
             let n = counted as f64;
             let rounding = n * coherent * coherent + 2.0 * coherent * n.sqrt();
-            let rest = (products.abs() - rounding).max(0.0);
-            exceeded(rest * rest / n, 1.0)
+            let rest = products.abs() - rounding;
+            if rest <= 0.0 { 1.0 } else { exceeded(rest * rest / n, 1.0) }
         });
         let fits = probability >= FALSE_ALARMS && whiteness.is_none_or(|p| p >= FALSE_ALARMS);
         (degrees > 0).then_some(Innovations { chi_square, degrees, probability, sigma, whiteness, fits })
@@ -216,5 +216,17 @@ mod tests {
         assert!(of([2.2, 5.0], [0.05, 0.1]).unwrap().is_open());
         assert_eq!(of([2.2, 5.0], [f64::INFINITY, 0.1]), None);
         assert_eq!(Seam::of_any_correlation(2.0, [&[1.0], &[]], [&[1.0], &[0.1]]), None);
+    }
+
+    /// By hand: a sum of `n` products of independent numbers has the variance `n`. What is no number is no white noise, and few products tell nothing.
+    #[test]
+    fn whiteness_is_that_of_the_sum_of_products() {
+        let of = |products: f64, counted: usize| Innovations::of([100.0, products], [100, counted], 1.0, 0.0);
+        let even = of(20.0, 100).unwrap();
+        assert!((even.whiteness.unwrap() - 0.0455).abs() < 1e-4 && even.fits);
+        assert!(!of(-40.0, 100).unwrap().fits && of(40.0, 49).unwrap().fits);
+        assert!(!of(f64::NAN, 100).unwrap().fits);
+        assert_eq!(of(40.0, 49).unwrap().whiteness, None);
+        assert_eq!(Innovations::of([0.0, 0.0], [0, 0], 1.0, 0.0), None);
     }
 }

@@ -161,9 +161,11 @@ impl Track {
         self.updates.iter().any(Update::is_contradicted) || self.together().is_some_and(|all| !all.fits)
     }
 
-    /// Whether a method that does not work by windows has an answer, and its innovations, where it has any, are what it believes of its errors.
+    /// Whether a method that does not work by windows has an answer, did not lose its model at all samples after the first, and its innovations, where it has any,
+    /// are what it believes of its errors.
     pub fn passes(&self) -> bool {
-        !self.estimates.is_empty() && self.innovations.is_none_or(|own| own.fits)
+        let follows = self.unseen == 0 || self.unseen + 1 < self.estimates.len();
+        !self.estimates.is_empty() && follows && self.innovations.is_none_or(|own| own.fits)
     }
 
     /// Whether one of its updates is borne out by the readings, and none is contradicted: of methods that work by windows.

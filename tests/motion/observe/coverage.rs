@@ -231,3 +231,41 @@ fn the_spline_of_section_4_6_is_found_with_its_kinks() {
         );
     }
 }
+
+/// A body whose first windows meet false minima under 1 mm of noise, each with a fit: all readings find the body, no window vetoes it, each stray is named, and the run does not pass.
+#[test]
+fn a_false_minimum_vetoes_nothing() {
+    let shape = "shape = { kind = \"spline\", radii = [1.648, 1.752, 1.794], knots = \"uniform\" }";
+    let palms =
+        "prescribed = [{ start = 0.5, rate = 0.5 }, { start = 1.6, rate = 0.1 }]\n[sensor]\nnoise = 0.001\n";
+    let model = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002/general.proof");
+    let experiment = experiment(&format!(
+        "title = \"Strays\"\nmodel = \"{}\"\nseed = 5\nduration = 1.4\nsamples = 401\n[body]\n{shape}\nmass = 1.0\norientation = 0.19\n\
+         rate = -0.07\n[palms]\ninertia = [0.5, 0.5]\n{palms}[observer]\ninputs = {{ g1 = \"tau1\", g2 = \"tau2\" }}\n\
+         methods = [\"newton\"]\nestimate = [\"r1\", \"r2\", \"omega0\"]\nguess = \"none\"\nwindow = 80\nsteps = 20\n",
+        model.display()
+    ));
+    let answers = experiment.run_with_shape(&NEVER, &|_| ()).unwrap();
+    let track = &answers[0].track;
+    let found = answers[0].reconstruction.as_ref().unwrap();
+    let whole = found.whole.as_ref().expect("all readings tell the motion");
+    assert!(found.contradiction.is_none());
+    let moments = &experiment.simulation.as_ref().unwrap().trajectory.moments;
+    for (sample, moment) in whole.samples.iter().zip(moments) {
+        let off = (sample.omega0.value - moment.omega0).abs();
+        assert!(off <= 5.0 * sample.omega0.deviation, "{} s", moment.time);
+    }
+    // each window that fits is where the body is, or named
+    let mut strays = 0;
+    for update in track.updates.iter().filter(|update| update.is_borne_out()) {
+        let truth = experiment.truth_at(update.from).unwrap();
+        let off = (0..3).map(|k| (update.estimate[k] - truth[k]).abs() / update.deviations[k]);
+        let named = format!("from {:.3} s", update.from);
+        let is_named =
+            track.remarks.iter().any(|remark| remark.starts_with(&named) && remark.contains("false minimum"));
+        let is_off = off.fold(0.0, f64::max) > 10.0;
+        assert!(!is_off || is_named, "{named}: {:?}", track.remarks);
+        strays += usize::from(is_off);
+    }
+    assert!(strays > 0 && !track.is_sound(), "{strays}");
+}

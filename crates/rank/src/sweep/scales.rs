@@ -12,7 +12,7 @@
 //! and derivatives have to be known to a hundred-millionth of theirs. Infinite means: not observable from these rows to first order.
 //! The number does not depend on units, and noise of another size multiplies it by that size.
 //!
-//! All of it is computed in doubles, and proves nothing.
+//! All of it is computed in doubles, along lines into singular sets also from enclosures, and proves nothing.
 
 use crate::observability::{Defined, Locus, LocusError, State};
 use dashu::rational::RBig;
@@ -216,7 +216,8 @@ fn variances(on: &Enclosures, rows: &[Vec<&Enclosure>]) -> Result<Option<Vec<f64
         }
     }
     let diagonal: Vec<&Enclosure> = (0..size).map(|i| &work[i][size + i]).collect();
-    let is_fixed = diagonal.iter().all(|own| !own.contains_zero() && own.significance() > FIXED);
+    // a variance that leaves the doubles is none of infinite size
+    let is_fixed = diagonal.iter().all(|own| own.significance() > FIXED && own.midpoint().is_normal());
     Ok(is_fixed.then(|| diagonal.iter().map(|own| own.midpoint()).collect()))
 }
 

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use palmistry_lang::{Assignment, CoordinateRange, LineEnd, Point, System};
 use palmistry_math::expression::{Input, NodeId, Program, Symbol};
 use palmistry_math::number::{
-    Arithmetic, Enclosure, Enclosures, Floats, Function, Interval, RealNumber, rational_from_f64,
+    Arithmetic, Enclosure, Enclosures, Floats, Interval, RealNumber, rational_from_f64,
 };
 use palmistry_rank::observability::{
     Branch, Codistribution, Coordinate, Defined, Length, Locus, State, float_inputs, linear_solution,
@@ -116,6 +116,10 @@ pub struct Landscape<'s> {
 /// Of enclosures along a line, which comes near to singular sets.
 const BITS: usize = 1024;
 
+/// Larger systems have their lines from doubles: elimination in so many bits takes a cube of the unknowns at each point.
+const MOST_UNKNOWNS: usize = 24;
+const MOST_OPERATIONS: usize = 200_000;
+
 /// Of states that are drawn for the scales.
 const SAMPLES: u64 = 1000;
 /// The seed of these where none is given, that of all commands.
@@ -220,17 +224,15 @@ impl<'s> Landscape<'s> {
     }
 
     fn enclosed_deviations(&self, values: &HashMap<Symbol, f64>) -> Option<Vec<Option<f64>>> {
+        if self.names.len() > MOST_UNKNOWNS || self.program.len() > MOST_OPERATIONS {
+            return None;
+        }
         let on = Enclosures::new(BITS);
         let mut inputs = Vec::new();
         for input in self.program.inputs() {
-            let (symbol, function) = match input {
-                Input::Plain(symbol) => (symbol, None),
-                Input::Sine(symbol) => (symbol, Some(Function::Sin)),
-                Input::Cosine(symbol) => (symbol, Some(Function::Cos)),
-                Input::Opaque(_) => return None,
-            };
-            let value = on.rational(&rational_from_f64(*values.get(symbol)?)?).ok()?;
-            inputs.push(function.map_or(Ok(value.clone()), |function| on.apply(function, &value)).ok()?);
+            // a plain program has no other inputs
+            let Input::Plain(symbol) = input else { return None };
+            inputs.push(on.rational(&rational_from_f64(*values.get(symbol)?)?).ok()?);
         }
         let entries = self.program.load(on).ok()?.run(&inputs, &mut Vec::new()).ok()?;
         let rows: Vec<Vec<Enclosure>> = entries.chunks(self.names.len().max(1)).map(<[_]>::to_vec).collect();
