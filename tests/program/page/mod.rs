@@ -145,8 +145,8 @@ fn a_reader_finds_their_way() {
             assert_eq!(seen["untitled"], json!([]), "{place}");
             assert!(seen["pictures"].as_u64() >= Some(3), "{place}");
             assert!(seen["label"].as_f64() >= Some(10.0), "{place}");
-            // most of the 12 steps of the map, and on two lines a title for each of 16 stripes, where neighbours differ
-            assert!(seen["hover"].as_u64() > Some(20), "{place}");
+            // each of the 12 steps of the map, and on each of two lines stripes whose values differ
+            assert!(seen["hover"].as_u64() >= Some(12 + 2 * 2), "{place}");
             // WCAG 2.2, criterion 1.4.3
             assert!(seen["contrast"].as_f64() >= Some(4.5) && seen["texts"].as_u64() > Some(200), "{place}");
             assert_eq!(seen["paper"].as_f64() < Some(0.2), dark, "{place}");
