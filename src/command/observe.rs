@@ -18,7 +18,7 @@ use palmistry::experiment::{
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
 use palmistry::observer::RecordError;
-use palmistry::report::{Observed, ended_in_words, forget_seconds, observe_json, observe_page, observe_text};
+use palmistry::report::{Observed, forget_seconds, observe_json, observe_page, observe_text};
 use palmistry::sweep::shard_of;
 use std::path::{Path, PathBuf};
 
@@ -198,7 +198,7 @@ impl Observe {
         if let Some(simulation) = &experiment.simulation
             && *simulation.ended() != Ended::Completed
         {
-            note(&format!("the motion ended early: {}", ended_in_words(simulation.ended())));
+            note(&format!("the motion ended early: {}", simulation.ended()));
         }
         if let Some(lost) = experiment.motion.as_ref().and_then(|motion| motion.ended()) {
             note(&format!("the motion ended early: {lost}"));

@@ -8,7 +8,7 @@ use indicatif::ProgressBar;
 use palmistry::experiment::{Experiment, Scene};
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
-use palmistry::report::{ended_in_words, modes_json, modes_text};
+use palmistry::report::{modes_json, modes_text};
 
 impl Observe {
     /// Whether what is asked for can be had of modes.
@@ -47,7 +47,7 @@ impl Observe {
         if let Some(simulation) = &experiment.simulation
             && *simulation.ended() != Ended::Completed
         {
-            note(&format!("the motion ended early: {}", ended_in_words(simulation.ended())));
+            note(&format!("the motion ended early: {}", simulation.ended()));
         }
         // a window in which modes change fits none: that is part of the answer
         let status = Status::of(windows.iter().any(|window| window.chosen.is_some()));

@@ -4,7 +4,7 @@ use super::interrupt::{begin_to_tell, interrupted};
 use super::observe::Observe;
 use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
-use palmistry::experiment::space::{SpaceExperiment, SpaceScene, SpaceVerdict};
+use palmistry::experiment::space::{SpaceExperiment, SpaceScene};
 use palmistry::file::note;
 use palmistry::report::{SpaceObserved, space_ended, space_json, space_page, space_surfaces, space_text};
 
@@ -51,7 +51,7 @@ impl Observe {
         let mut answers = experiment.run(&interrupted, &|| bar.inc(1));
         bar.finish_and_clear();
         if self.no_times {
-            answers.updates.iter_mut().for_each(|update| update.seconds = f64::NAN);
+            answers.forget_times();
         }
         begin_to_tell();
         let observed =
@@ -69,10 +69,6 @@ impl Observe {
             }
             files.announce(&folder.join("index.html"));
         }
-        // a window that sees nothing is part of the answer; readings that no body explains are not
-        let wrong = |verdict| matches!(verdict, SpaceVerdict::DoesNotFit | SpaceVerdict::Lost);
-        let verdicts = || answers.updates.iter().map(|update| update.verdict);
-        let as_expected = !verdicts().any(wrong) && verdicts().any(|verdict| verdict == SpaceVerdict::Fits);
-        files.print(Form::of(self.json), json, || space_text(&observed), Status::of(as_expected))
+        files.print(Form::of(self.json), json, || space_text(&observed), Status::of(answers.as_expected()))
     }
 }

@@ -39,7 +39,7 @@ fn arrives(experiment: &SpaceExperiment, update: &SpaceUpdate) {
     let state = update.state.as_ref().unwrap();
     let error = relative_error(&state.entries(), &experiment.true_entries(update).unwrap());
     assert!(error < 1e-7, "{error:e}");
-    let mut moments = state.inertia_over_mass.symmetric_eigenvalues();
+    let mut moments = state.inertia_over_mass.try_symmetric_eigen(f64::EPSILON, 1000).unwrap().eigenvalues;
     moments.as_mut_slice().sort_by(f64::total_cmp);
     for (found, by_hand) in moments.iter().zip([1.0, 7.25 / 5.0, 10.25 / 5.0]) {
         assert!((found - by_hand).abs() < 1e-7, "{moments}");

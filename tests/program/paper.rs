@@ -242,6 +242,41 @@ fn words_of_entries_are_names() {
     assert_eq!((system.sets.len(), system.maps.len(), system.lines.len(), system.claims.len()), (2, 1, 1, 2));
 }
 
+/// A paper may have scenes of every kind: in motion, at rest, in space. A mistake in one is told before anything is decided.
+#[test]
+fn a_paper_has_scenes_of_every_kind() {
+    let folder = folder();
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002/scenes");
+    let named = |name: &str| format!("{:?}", scenes.join(name).to_str().unwrap());
+    write(&folder, "cart.proof", "system \"cart\"\nstate x\nclaim one: x + x = 2*x\n");
+    let all = ["figure_5_3.toml", "turning_point.toml", "slow_jump.toml"].map(named).join(", ");
+    write(&folder, "paper.toml", format!("title = \"t\"\nscenes = [{all}]\n"));
+    let out = folder.path().join("out");
+    let verified =
+        || palmistry(&["verify", folder.path().to_str().unwrap(), "--json", "--out", out.to_str().unwrap()]);
+    let output = verified();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let found = json(&output);
+    assert_eq!((&found["words"]["proved"], found["experiments"].as_array().unwrap().len()), (&1.into(), 3));
+    // of the ellipsoid the mass, which nobody has told
+    let mass = &found["experiments"][2]["updates"][0]["states"]["m"];
+    assert!((mass["recovered"].as_f64().unwrap() - 1.0).abs() < 1e-6, "{mass}");
+    let page = std::fs::read_to_string(out.join("index.html")).unwrap();
+    for title in ["Figure 5.3: an ellipsoid on three palms", "Section 3.7: a body that jumps"] {
+        assert_eq!(page.matches(&format!("<h3>{title}</h3>")).count(), 1, "{title}");
+    }
+    assert!(page.contains("id=space") && page.contains("class=solid") && !page.contains("NaN"));
+
+    let text = std::fs::read_to_string(scenes.join("figure_5_3.toml")).unwrap();
+    write(&folder, "wrong.toml", text.replace("balanced = true", "balances = true"));
+    write(&folder, "paper.toml", "title = \"t\"\nscenes = [\"wrong.toml\"]\n");
+    let output = verified();
+    let error = json(&output)["error"].clone();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(error["message"].as_str().unwrap().contains("balances"), "{error}");
+    assert_eq!(error["line"], 12, "{error}");
+}
+
 /// What paper.toml may not say, and what is said of it.
 #[test]
 fn a_bad_description_is_told() {

@@ -5,6 +5,7 @@
 //! section 11.6): the logarithms of the determinants of `G(y) - t I` keep the eigenvalues above `t`, which is pushed up.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
+use palmistry_math::number::MOST_ITERATIONS;
 
 /// A symmetric block `start + sum_k y_k directions[k]`; a direction is a list of entries, each with its mirror image.
 #[derive(Clone, Debug)]
@@ -45,7 +46,9 @@ pub fn centre(blocks: &[Block], unknowns: usize) -> Option<Centre> {
     let scale = blocks.iter().flat_map(|block| block.start.iter()).fold(1.0, |a: f64, b| a.max(b.abs()));
     let mut y = vec![0.0; unknowns];
     let least = |y: &[f64]| {
-        blocks.iter().map(|block| block.at(y).symmetric_eigenvalues().min()).fold(f64::INFINITY, f64::min)
+        let of = |block: &Block| block.at(y).try_symmetric_eigen(f64::EPSILON, MOST_ITERATIONS);
+        let eigenvalues = blocks.iter().map(|block| of(block).map(|eigen| eigen.eigenvalues.min()));
+        eigenvalues.map(|value| value.unwrap_or(f64::NEG_INFINITY)).fold(f64::INFINITY, f64::min)
     };
     let mut t = least(&y) - 0.1 * scale;
     let size: usize = blocks.iter().map(|block| block.start.nrows()).sum();

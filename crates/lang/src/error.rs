@@ -56,6 +56,11 @@ pub fn line_and_column(text: &str, at: usize) -> (usize, usize) {
     (line, column)
 }
 
+/// Where the lines of a text begin.
+pub(crate) fn line_starts(text: &str) -> Vec<usize> {
+    std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect()
+}
+
 /// An error without its text: what the elaborator knows.
 #[derive(Debug)]
 pub struct Problem {
@@ -140,4 +145,21 @@ pub fn nearest<'a>(wanted: &str, known: impl IntoIterator<Item = &'a str>) -> Op
         .filter(|(distance, _)| *distance <= 1 + wanted.chars().count() / 3)
         .min()
         .map(|(_, name)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::line_and_column;
+    use crate::System;
+    use std::path::Path;
+
+    #[test]
+    fn a_system_knows_its_places_as_its_text_does() {
+        let text = "# \u{e4}\nsystem \"\u{3bb} of a\"\n\nstate x # \u{1d54f}\n\n";
+        let system = System::parse("a.proof", text, Path::new("")).unwrap();
+        for at in (0..=text.len()).filter(|at| text.is_char_boundary(*at)) {
+            assert_eq!(system.place(at), line_and_column(text, at), "{at}");
+        }
+        assert_eq!(system.place(usize::MAX), line_and_column(text, text.len()));
+    }
 }

@@ -241,6 +241,8 @@ pub struct System {
     pub name: String,
     /// The text of the file.
     pub source: String,
+    /// Where its lines begin.
+    pub(super) line_starts: Vec<usize>,
     /// All expressions of the file.
     pub graph: Graph,
     /// The states, in the order in which the file names them.
@@ -260,6 +262,8 @@ pub struct System {
     pub claims: Vec<ClaimSyntax>,
     /// Sets of states that deserve a look of their own, in the order of the file.
     pub sets: Vec<NamedSet>,
+    /// Their titles.
+    pub(super) set_titles: BTreeSet<String>,
     /// Planes over which singular values are looked at.
     pub maps: Vec<MapView>,
     /// Lines along which they are.
@@ -377,6 +381,15 @@ impl System {
         self.moving_fields().into_iter().map(role).collect()
     }
 
+    /// The line and the column of a place in the text, in characters, both counted from one.
+    pub fn place(&self, at: usize) -> (usize, usize) {
+        // the place is on the boundary of a character, or at the end
+        let at = at.min(self.source.len());
+        let line = self.line_starts.partition_point(|start| *start <= at);
+        let before = self.source.get(self.line_starts[line - 1]..at);
+        (line, before.map_or(0, |before| before.chars().count()) + 1)
+    }
+
     /// Nothing, where a field moves the states.
     ///
     /// # Errors
@@ -386,11 +399,7 @@ impl System {
         match self.no_motion() {
             None => Ok(()),
             Some(problem) => {
-                let line = self.source.as_bytes()[..problem.span.start.min(self.source.len())]
-                    .iter()
-                    .filter(|byte| **byte == b'\n')
-                    .count()
-                    + 1;
+                let (line, _) = self.place(problem.span.start);
                 let place = if self.fields.is_empty() {
                     self.name.clone()
                 } else {

@@ -4,7 +4,7 @@ use super::components::is_component;
 use super::declare::in_words;
 use super::dimension::{self, Declared};
 use super::elaborate::Wanted;
-use super::error::Problem;
+use super::error::{Problem, line_starts};
 use super::examine::expected;
 use super::grammar::{Entries, parse_entries};
 use super::imports::Reading;
@@ -36,6 +36,7 @@ impl System {
             cite: None,
             name: name.to_owned(),
             source: text.to_owned(),
+            line_starts: line_starts(text),
             graph,
             states: Vec::new(),
             known: BTreeSet::new(),
@@ -45,6 +46,7 @@ impl System {
             avoid: Vec::new(),
             claims: Vec::new(),
             sets: Vec::new(),
+            set_titles: BTreeSet::new(),
             maps: Vec::new(),
             lines: Vec::new(),
             reductions: Vec::new(),

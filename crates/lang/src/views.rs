@@ -279,7 +279,7 @@ impl System {
     pub(super) fn enter_view(&mut self, view: &View) -> Result<(), Problem> {
         match view {
             View::Set { title, conditions, is_pole, span } => {
-                if self.sets.iter().any(|known| known.name == *title) {
+                if !self.set_titles.insert(title.clone()) {
                     let message = format!("there is a set \"{title}\" already");
                     return Err(Problem::new(span, message, "the second one"));
                 }

@@ -57,7 +57,7 @@ pub use layout::Colour;
 pub use layout::Layout;
 pub use motion::{Observed, modes_json, modes_text, observe_json, observe_page, observe_text};
 #[doc(hidden)]
-pub use motion::{ended_in_words, stream_end_json, stream_end_text, stream_json, stream_text};
+pub use motion::{stream_end_json, stream_end_text, stream_json, stream_text};
 pub use notebook::{claims_html, rank_html};
 pub use object::{claims_json, read_error_json, versioned};
 pub use page::{drops_page, findings_json, findings_text, page};

@@ -1,7 +1,6 @@
 //! What slow palms tell of a body: text, JSON, and a page with the pictures of figures 3.6, 3.7 and 3.8 and the body in motion.
 
 use crate::document::document;
-use crate::motion::ended_in_words;
 use crate::slow_observed::SlowObserved;
 use crate::slow_plot::{animation, curves, frames};
 use crate::slow_study::{number, study_json, study_section, study_text};
@@ -115,12 +114,8 @@ pub fn slow_text(observed: &SlowObserved<'_>) -> String {
     let mut out = format!("{}\n", experiment.scene.title);
     let _ = writeln!(out, "{} samples", experiment.readings.rows());
     if let Some(truth) = &experiment.truth {
-        let _ = writeln!(
-            out,
-            "the motion: {}; jumps: {}",
-            ended_in_words(&truth.trajectory.ended),
-            truth.trajectory.jumps.len()
-        );
+        let _ =
+            writeln!(out, "the motion: {}; jumps: {}", truth.trajectory.ended, truth.trajectory.jumps.len());
         for jump in &truth.trajectory.jumps {
             let _ = writeln!(
                 out,
@@ -212,7 +207,7 @@ pub fn slow_json(observed: &SlowObserved<'_>) -> Value {
         let jumps = truth.trajectory.jumps.iter().map(|jump| {
             json!({ "time": jump.time, "palms": jump.palms, "from": jump.from, "to": jump.to, "drop": jump.drop })
         });
-        json!({ "ended": ended_in_words(&truth.trajectory.ended), "jumps": jumps.collect::<Vec<_>>() })
+        json!({ "ended": truth.trajectory.ended.to_string(), "jumps": jumps.collect::<Vec<_>>() })
     });
     let votes = answers.votes.iter().map(|vote| json!({ "height": vote.height, "votes": vote.votes }));
     json!({
@@ -255,7 +250,7 @@ pub fn slow_page(observed: &SlowObserved<'_>) -> String {
             p {
                 "A smooth convex body at rest between two slow palms (chapter 3); " b { (experiment.readings.rows()) " samples" } ". "
                 @if let Some(truth) = &experiment.truth {
-                    "Simulated: the motion " (ended_in_words(&truth.trajectory.ended)) ", with " (truth.trajectory.jumps.len()) " jumps. "
+                    "Simulated: the motion " (truth.trajectory.ended) ", with " (truth.trajectory.jumps.len()) " jumps. "
                 } @else { "Recorded: what is true is not known. " }
             }
             @if observed.interrupted { p.bad { "This run was interrupted; it shows what was done until then." } }

@@ -1,6 +1,5 @@
 //! Scenes of slow motion as a part of the page of a paper.
 
-use crate::motion::ended_in_words;
 use crate::slow::{jumps_in_words, ways_table};
 use crate::slow_observed::SlowObserved;
 use crate::slow_plot::{frames, off_truth};
@@ -34,7 +33,7 @@ fn one(observed: &SlowObserved<'_>) -> Markup {
         p {
             b { (experiment.readings.rows()) " samples" }
             @if let Some(truth) = &experiment.truth {
-                "; the motion " (ended_in_words(&truth.trajectory.ended)) ", with " (truth.trajectory.jumps.len()) " jumps"
+                "; the motion " (truth.trajectory.ended) ", with " (truth.trajectory.jumps.len()) " jumps"
             }
             ". The readings " b class=[(!answers.explained).then_some("bad")] { @if answers.explained { "are" } @else { "are not" } " explained" } "."
             @if !answers.jumps.is_empty() { " Jumps that they tell, and where descent in the recovered potential leads: " (jumps_in_words(answers)) "." }

@@ -17,6 +17,13 @@ pub struct SpaceObserved<'a> {
     pub interrupted: bool,
 }
 
+impl<'a> SpaceObserved<'a> {
+    /// A run that was not interrupted.
+    pub fn of(experiment: &'a SpaceExperiment, answers: &'a SpaceAnswers) -> SpaceObserved<'a> {
+        SpaceObserved { experiment, answers, interrupted: false }
+    }
+}
+
 /// What is sought, with its unit.
 const NAMES: [(&str, &str); 16] = [
     ("c_x", "m"),

@@ -32,7 +32,6 @@ fn picture(observed: &SpaceObserved<'_>) -> Markup {
         @if observed.answers.shape.is_none() { p { "There is no shape." } }
         @else {
             (turnable_picture(&observed.experiment.scene.title, &shown))
-            script { (PreEscaped(SCRIPT)) }
         }
     }
 }
@@ -56,9 +55,65 @@ fn curves(observed: &SpaceObserved<'_>) -> String {
         )
 }
 
+/// The shape, and the bounds that there are of it.
+fn shape(observed: &SpaceObserved<'_>) -> Markup {
+    html! {
+        (picture(observed))
+        table { tbody { @for (what, value) in shape_rows(observed) { tr { th scope="row" { (what) } td { (value) } } } } }
+    }
+}
+
+/// State, inertia and mass, a table a window.
+fn windows(observed: &SpaceObserved<'_>) -> Markup {
+    let updates = &observed.answers.updates;
+    html! {
+        @for update in updates.iter().take(MOST_WINDOWS) {
+            p { (headline(observed, update)) }
+            @let all = entries(observed, update);
+            @if !all.is_empty() {
+                div.scroll { table {
+                    thead { tr { th { "" } th { "recovered" } th { "true" } th { "error" } th { "bound" } } }
+                    tbody { @for entry in &all { tr {
+                        td { (entry.name) ", " (entry.unit) }
+                        td.n { (format!("{:.8}", entry.recovered)) }
+                        td.n { (entry.truth.map_or("-".to_owned(), |truth| format!("{truth:.8}"))) }
+                        td.n { (entry.truth.map_or("-".to_owned(), |truth| format!("{:.1e}", (entry.recovered - truth).abs()))) }
+                        td.n { (format!("{:.1e}", entry.bound)) }
+                    } } }
+                } }
+            }
+        }
+        @if updates.len() > MOST_WINDOWS { p { "The other windows are in the JSON." } }
+    }
+}
+
+/// Scenes in space, as a section of the page of a paper.
+pub(super) fn space_section(all: &[SpaceObserved<'_>]) -> Markup {
+    html! {
+        section #space {
+            h2 { "Bodies in space on three palms" }
+            p {
+                "A smooth convex body is recovered from the contacts with three palms, with nothing known: motion, inertia, mass and shape. "
+                code { "palmistry observe" } " writes such a page for any scene."
+            }
+            @for observed in all {
+                h3 { (observed.experiment.scene.title) }
+                p {
+                    b { (observed.experiment.readings.times.len()) " samples" } ". "
+                    @if let Some(ended) = space_ended(observed) { (ended) ". " }
+                }
+                (shape(observed))
+                (windows(observed))
+                @if observed.experiment.truth.is_some() { div.two { (PreEscaped(curves(observed))) } }
+            }
+            script { (PreEscaped(SCRIPT)) }
+        }
+    }
+}
+
 /// The page as HTML.
 pub fn space_page(observed: &SpaceObserved<'_>) -> String {
-    let (experiment, answers) = (observed.experiment, observed.answers);
+    let experiment = observed.experiment;
     let content = html! {
         header {
             h1 { (experiment.scene.title) }
@@ -72,30 +127,14 @@ pub fn space_page(observed: &SpaceObserved<'_>) -> String {
         main {
             section #shape {
                 h2 { "The shape that was touched" }
-                (picture(observed))
-                table { tbody { @for (what, value) in shape_rows(observed) { tr { th scope="row" { (what) } td { (value) } } } } }
+                (shape(observed))
             }
             section #state {
                 h2 { "State, inertia and mass" }
-                @for update in answers.updates.iter().take(MOST_WINDOWS) {
-                    p { (headline(observed, update)) }
-                    @let all = entries(observed, update);
-                    @if !all.is_empty() {
-                        div.scroll { table {
-                            thead { tr { th { "" } th { "recovered" } th { "true" } th { "error" } th { "bound" } } }
-                            tbody { @for entry in &all { tr {
-                                td { (entry.name) ", " (entry.unit) }
-                                td.n { (format!("{:.8}", entry.recovered)) }
-                                td.n { (entry.truth.map_or("-".to_owned(), |truth| format!("{truth:.8}"))) }
-                                td.n { (entry.truth.map_or("-".to_owned(), |truth| format!("{:.1e}", (entry.recovered - truth).abs()))) }
-                                td.n { (format!("{:.1e}", entry.bound)) }
-                            } } }
-                        } }
-                    }
-                }
-                @if answers.updates.len() > MOST_WINDOWS { p { "The other windows are in observe.json." } }
+                (windows(observed))
             }
             @if experiment.truth.is_some() { section #errors { h2 { "Errors over the samples" } (PreEscaped(curves(observed))) } }
+            script { (PreEscaped(SCRIPT)) }
         }
     };
     document(&experiment.scene.title, &content, false)

@@ -8,6 +8,8 @@
 use super::groundwork::{Groundwork, Steady, sample_range};
 use super::run::Experiment;
 use super::scene::{Guess, SceneError};
+use super::simulation::Simulation;
+use palmistry_bodies::mechanics::moving::Ended;
 use palmistry_lang::UnknownKind;
 use palmistry_observe::{MotionRankFound, NoiseFrom, Objection, RecordReading, Signals, Update};
 use std::collections::BTreeMap;
@@ -162,7 +164,11 @@ impl Experiment {
     pub(super) fn has_windows(&self) -> Result<(), SceneError> {
         match self.signals.times().len() {
             samples @ 0..2 => {
-                let message = format!("of {samples} samples there is no window");
+                let ended = self.simulation.as_ref().map(Simulation::ended);
+                let early = ended.filter(|ended| !matches!(ended, Ended::Completed));
+                let early =
+                    early.map_or_else(String::new, |ended| format!("the motion ended early, {ended}: "));
+                let message = format!("{early}of {samples} samples there is no window");
                 let help = "a window has two samples or more, and some for each unknown to tell anything";
                 Err(self.scene.error_at("observer.window", message, "such windows", help))
             }

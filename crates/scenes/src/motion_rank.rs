@@ -7,7 +7,7 @@
 use nalgebra::DMatrix;
 use palmistry_lang::System;
 use palmistry_math::expression::{Derivation, Graph, Node, NodeId, Program, Symbol, gradient};
-use palmistry_math::number::{Floats, PrimeField, rational_from_f64};
+use palmistry_math::number::{Floats, MOST_ITERATIONS, PrimeField, rational_from_f64};
 use palmistry_observe::{EstimateQuestion, Model, MotionRankFound, PoleMet, Task, parameter_values};
 use palmistry_rank::observability::{Coordinate, Defined, State, singular_values};
 use palmistry_rank::sweep::{Certainty, DecidedRows, ProofWanted, RankDecider, StateDecision};
@@ -332,12 +332,13 @@ impl Inputs<'_> {
         let read = DMatrix::from_fn(count, self.columns.len(), |i, j| {
             self.task.signals.column(self.columns[j])[first + i]
         });
-        let coefficients = powers.svd(true, true).solve(&read, 1e-12);
+        let svd = powers.try_svd(true, true, f64::EPSILON, MOST_ITERATIONS);
+        let coefficients = svd.and_then(|svd| svd.solve(&read, 1e-12).ok());
         for (place, own) in found.iter_mut().enumerate() {
             let mut factorial = 1.0;
             for order in 1..=MOST {
                 factorial *= order as f64;
-                let coefficient = coefficients.as_ref().ok().filter(|_| order <= degree);
+                let coefficient = coefficients.as_ref().filter(|_| order <= degree);
                 let coefficient = coefficient.map_or(0.0, |all| all[(order, place)]);
                 own.push(factorial * coefficient / reach.powi(order as i32));
             }

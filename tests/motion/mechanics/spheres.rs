@@ -239,7 +239,7 @@ fn a_palm_that_is_too_hollow_is_refused() {
     let met = (0..400).map(|k| {
         let (s, c) = (f64::from(k) * 0.61).sin_cos();
         let n = Vector3::new(s, c, (f64::from(k) * 0.137).sin()).normalize();
-        solid.support(&n).bend.symmetric_eigenvalues().max()
+        solid.support(&n).bend.try_symmetric_eigen(f64::EPSILON, 1000).unwrap().eigenvalues.max()
     });
     let met = met.fold(0.0, f64::max);
     assert!(met < bound && bound < 5.0 * met, "{met} {bound}");

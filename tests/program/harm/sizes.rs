@@ -1,7 +1,7 @@
 //! Sizes that lie, and files that are nothing but long.
 
 use super::refused;
-use crate::common::{folder, write};
+use crate::common::{folder, palmistry, write};
 use palmistry::import::{ImportQuestion, import};
 use palmistry::system::System;
 use std::path::Path;
@@ -65,4 +65,57 @@ fn chains_of_references_are_followed_once() {
     let found = System::examine_text("a.proof", &circle, Path::new(""), 100);
     let said: Vec<&str> = found.problems.iter().map(|problem| problem.message.as_str()).collect();
     assert_eq!(said, ["0", "1", "2", "3", "4", "7"].map(|i| format!("'e{i}' is said to come from itself")));
+}
+
+/// The text of a scene that comes with the program, with another duration, and what `observe` says of it.
+fn with_duration(scene: &str, duration: &str) -> std::process::Output {
+    let folder = folder();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002");
+    let text = std::fs::read_to_string(root.join("scenes").join(scene)).unwrap();
+    let text = text.replace("\"../", &format!("\"{}/", root.display()));
+    let line = text.lines().find(|line| line.starts_with("duration = ")).unwrap();
+    let path = write(&folder, "scene.toml", text.replace(line, &format!("duration = {duration}")));
+    palmistry(&["observe", path.to_str().unwrap()])
+}
+
+/// A duration in a wrong unit: sliding back and forth for thirty years is given up after a number of steps, and says so.
+#[test]
+fn a_motion_of_thirty_years_ends() {
+    let output = with_duration("friction.toml", "1e9");
+    let words = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(words.contains("takes more than 300000 steps"), "{words}");
+    assert!(matches!(output.status.code(), Some(1 | 2)), "{words}");
+}
+
+/// Where rates overflow no decomposition waits for them to converge: the run ends, and nothing fits.
+#[test]
+fn a_slow_motion_of_no_time_ends() {
+    for duration in ["1e-300", "1e300"] {
+        let output = with_duration("slow_jump.toml", duration);
+        let words =
+            String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+        assert!(matches!(output.status.code(), Some(1 | 2)), "{duration}: {words}");
+        assert!(!words.contains("panicked"), "{words}");
+    }
+}
+
+/// Many sets are entered, and more states than a dense matrix has room for are refused where they are declared.
+#[test]
+fn many_sets_are_read_and_too_many_states_are_refused() {
+    let head = "system \"a\"\nstate x\n".to_owned();
+    let sets = (0..64_000).fold(head, |text, i| text + &format!("set \"{i}\": x = {i}\n"));
+    assert_eq!(System::parse("a.proof", &sets, Path::new("")).unwrap().sets.len(), 64_000);
+    let twice = format!("{sets}set \"7\": x = 1/2\n");
+    let error = System::parse("a.proof", &twice, Path::new("")).unwrap_err();
+    assert_eq!(
+        (error.to_string(), error.line_and_column().0),
+        ("there is a set \"7\" already".to_owned(), 64_003)
+    );
+
+    let names = |count: usize| (0..count).map(|i| format!("x{i}")).collect::<Vec<_>>().join(", ");
+    let system =
+        |count| System::parse("a.proof", &format!("system \"a\"\nstate {}\n", names(count)), Path::new(""));
+    assert_eq!(system(10_000).unwrap().states.len(), 10_000);
+    let error = system(10_001).unwrap_err();
+    assert_eq!(error.to_string(), "a system has at most 10000 states and unknown parameters");
 }

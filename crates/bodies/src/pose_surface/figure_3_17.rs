@@ -57,7 +57,7 @@ fn lifted(e: f64, palms: PalmPair, phi0: f64, lifts: [f64; POSES]) -> Vec<[f64; 
             }
         }
     }
-    let found = matrix.svd(true, true).solve(&side, 1e-12).unwrap();
+    let found = matrix.try_svd(true, true, f64::EPSILON, 1000).unwrap().solve(&side, 1e-12).unwrap();
     let mut harmonics = vec![[0.0; 2]; ORDER + 1];
     for (value, (k, is_sine)) in found.iter().zip(columns) {
         harmonics[k][usize::from(is_sine)] += weight(k) * value;

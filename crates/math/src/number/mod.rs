@@ -72,6 +72,10 @@ pub(crate) use turn::Turn;
 
 use dashu::rational::RBig;
 
+/// After so many steps the decomposition of a matrix of doubles is given up: with an entry that is no finite number it would never end, and
+/// hundreds suffice where it has an end.
+pub const MOST_ITERATIONS: usize = 10_000;
+
 /// A function of one variable that is not a ratio of polynomials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs)] // names and messages say it

@@ -245,7 +245,10 @@ pub(super) fn together(question: &Question, found: Vec<(Size, Branch, OnOneBranc
         needs.dedup();
         let needs = needs.join("; ");
         return Verdict::undecided(if verdicts.is_empty() {
-            format!("it exists nowhere: it needs {needs}")
+            // a derivative may exist where the formula of the rules has no value, as that of an absolute value squared at zero
+            format!(
+                "its formula exists nowhere (derivatives are taken by the rules, term by term): it needs {needs}"
+            )
         } else {
             format!("no state was found at which all of it exists: it needs {needs}")
         });

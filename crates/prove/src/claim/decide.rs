@@ -15,9 +15,7 @@ use super::visible::smooth;
 use dashu::rational::RBig;
 use palmistry_checker::{ClaimParts, Evidence, RecordedWord, VerdictRecord, source_digest};
 use palmistry_io::UNINTERRUPTED;
-use palmistry_lang::{
-    Basis, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line, line_and_column,
-};
+use palmistry_lang::{Basis, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line};
 use palmistry_math::expression::syntax::{Equation, Expr, Relation};
 use palmistry_math::expression::{Symbol, add_guard};
 use palmistry_rank::observability::{Branch, solve};
@@ -184,7 +182,7 @@ fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) ->
         definitions: explanations.definitions,
         differentiated_along: explanations.fields,
         file: system.name.clone(),
-        place: line_and_column(&system.source, claim.span.start),
+        place: system.place(claim.span.start),
         id: claim.id.clone(),
         ok: expected.is_none_or(|expected| verdict.meets(expected)) && print_is_wrong,
         statement,
@@ -357,7 +355,7 @@ fn attempt(
         let terms = Terms { guards, ..Terms::default() };
         let on = OnBranch::new(system, &Branch::default(), &terms)?;
         if let Existence::Nowhere(guard) = existence(system, &on, rng) {
-            return Err(format!("it exists nowhere: it needs {guard}"));
+            return Err(format!("its formula exists nowhere: it needs {guard}"));
         }
         return pole_statement(system, statement, left, right, rng);
     }

@@ -4,7 +4,7 @@
 //! What was worked on is given away with the work, so that nothing half done is met afterwards.
 
 use super::verdict::{Outcome, Verdict};
-use palmistry_lang::{Basis, ClaimBody, ClaimSyntax, System, in_one_line, line_and_column};
+use palmistry_lang::{Basis, ClaimBody, ClaimSyntax, System, in_one_line};
 use std::any::Any;
 use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
@@ -84,7 +84,7 @@ pub(super) fn lost(system: &System, claim: &ClaimSyntax, why: String, seconds: f
     };
     Outcome {
         file: system.name.clone(),
-        place: line_and_column(&system.source, claim.span.start),
+        place: system.place(claim.span.start),
         id: claim.id.clone(),
         statement: statement.unwrap_or_default(),
         fault,

@@ -3,9 +3,7 @@
 use super::equilibrate::equilibrate;
 use faer::Mat;
 use nalgebra::DMatrix;
-
-/// A singular value decomposition that takes more steps than this is given up.
-const MOST_ITERATIONS: usize = 10_000;
+use palmistry_math::number::MOST_ITERATIONS;
 
 /// A full rank may be taken from doubles whose errors are not known where the smallest singular value is at least this
 /// part of the largest: half of the digits of a double.

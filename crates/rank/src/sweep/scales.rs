@@ -20,14 +20,12 @@ use nalgebra::DMatrix;
 use palmistry_lang::System;
 use palmistry_math::expression::{NodeId, Program, Symbol, expand_angles};
 use palmistry_math::number::{
-    Arithmetic, Enclosure, Enclosures, Floats, Refusal, rational_from_f64, rational_to_f64,
+    Arithmetic, Enclosure, Enclosures, Floats, MOST_ITERATIONS, Refusal, rational_from_f64, rational_to_f64,
 };
 use std::collections::BTreeSet;
 
 /// So many states are looked at.
 const STATES: u64 = 200;
-/// A decomposition that has not come to its end by then has none.
-const MOST_ITERATIONS: usize = 10_000;
 /// Singular values below this part of the largest one, of columns of length one, cannot be told from zero in doubles.
 const NOISE: f64 = 1e-12;
 

@@ -7,7 +7,6 @@ use crate::motion::recognition::{recognition_json, recognition_text};
 use crate::motion::reconstruction::{shape_json, shape_text};
 use crate::motion::studies::{studies_json, studies_text};
 use crate::motion::verdicts::{innovations_json, together_json, verdict_lines};
-use palmistry_bodies::mechanics::moving::Ended;
 use palmistry_observe::{Fault, Update, UpdateEnd};
 use palmistry_scenes::{Answer, Experiment, Guess, Studied, error};
 use serde_json::{Map, Value, json};
@@ -44,19 +43,6 @@ pub(super) fn end_name(end: &UpdateEnd) -> String {
         UpdateEnd::Stuck => "no step lowers the error".to_owned(),
         UpdateEnd::Blind { .. } => "cannot see".to_owned(),
         UpdateEnd::Lost(lost) => format!("lost: {lost}"),
-    }
-}
-
-/// How a simulation ended, in words.
-pub fn ended_in_words(ended: &Ended) -> String {
-    match ended {
-        Ended::Completed => "completed".to_owned(),
-        Ended::ContactLost { palm, time } => {
-            format!("contact with palm {palm} lost at {time:.6} s: its force is zero")
-        }
-        Ended::PalmsParallel { time } => format!("palms parallel at {time:.6} s"),
-        Ended::OutOfPalm { palm, time } => format!("contact ran off palm {palm} at {time:.6} s"),
-        Ended::Failed { time, why } => format!("failed at {time:.6} s: {why}"),
     }
 }
 
@@ -231,7 +217,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
     }
     if let Some(simulation) = &experiment.simulation {
         found["simulation"] = json!({
-            "ended": ended_in_words(simulation.ended()),
+            "ended": simulation.ended().to_string(),
             "energy_drift": simulation.trajectory.energy_drift(),
             "draws": simulation.draws,
         });
@@ -264,7 +250,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         let _ = writeln!(
             text,
             "{samples} samples; {}; energy kept to {:.1e} J",
-            ended_in_words(simulation.ended()),
+            simulation.ended(),
             simulation.trajectory.energy_drift()
         );
     } else if let Some(motion) = &experiment.motion {

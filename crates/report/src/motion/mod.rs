@@ -21,7 +21,7 @@ pub(super) mod study_plot;
 pub(super) mod table;
 mod verdicts;
 
-pub use answers::{Observed, ended_in_words, observe_json, observe_text};
+pub use answers::{Observed, observe_json, observe_text};
 pub use modes::{modes_json, modes_text};
 pub use page::observe_page;
 pub use stream::{stream_end_json, stream_end_text, stream_json, stream_text};

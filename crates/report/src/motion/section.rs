@@ -1,6 +1,6 @@
 //! An experiment as a part of a page: pictures first, then what each observer found, in tables and in words.
 
-use crate::motion::answers::{Observed, ended_in_words, fault_lines, noise_unit};
+use crate::motion::answers::{Observed, fault_lines, noise_unit};
 use crate::motion::frames::{frames, recovered_outline};
 use crate::motion::outline_section::shape_section;
 use crate::motion::plot::{errors, sensor_errors, state};
@@ -85,7 +85,7 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
                 b { (times.len()) " samples over " (shortest(last - first)) " s" } ". The motion "
                 @match simulation.ended() {
                     palmistry_bodies::mechanics::moving::Ended::Completed => { "went to its end" }
-                    early => { b { "ended early: " (ended_in_words(early)) } }
+                    early => { b { "ended early: " (early) } }
                 }
                 ", and energy was kept to " (format!("{:.0e} J", simulation.trajectory.energy_drift())) ". "
                 @if sensor.noise == 0.0 && sensor.resolution == 0.0 {

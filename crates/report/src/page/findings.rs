@@ -8,6 +8,7 @@ use crate::ranks::answer::rank_json;
 use crate::ranks::{drops_json, taken_for_granted};
 use crate::slow::slow_json;
 use crate::slow_observed::SlowObserved;
+use crate::space::{SpaceObserved, space_json};
 use crate::stress::answer::stress_json;
 use crate::trade::answer::trade_json;
 use palmistry_io::foreign::shown;
@@ -199,6 +200,8 @@ pub fn findings_json(found: &Findings) -> Value {
             observe_json(&Observed::of(experiment, answers))
         }).chain(found.slow.iter().map(|(experiment, answers)| {
             slow_json(&SlowObserved::of(experiment, answers))
+        })).chain(found.space.iter().map(|(experiment, answers)| {
+            space_json(&SpaceObserved::of(experiment, answers))
         })).collect::<Vec<_>>(),
         "seconds": found.seconds,
     })
@@ -221,6 +224,7 @@ pub fn forget_times(found: &mut Findings) {
         }
     }
     found.slow.iter_mut().for_each(|(_, answers)| answers.seconds = [f64::NAN; 3]);
+    found.space.iter_mut().for_each(|(_, answers)| answers.forget_times());
     found.experiments.iter_mut().flat_map(|(_, answers)| answers).for_each(Answer::forget_times);
 }
 

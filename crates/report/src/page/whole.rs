@@ -12,17 +12,20 @@ use crate::motion::answers::Observed;
 use crate::motion::section::observed_section;
 use crate::slow_observed::SlowObserved;
 use crate::slow_section::slow_section;
+use crate::space::SpaceObserved;
+use crate::space_page::space_section;
 use maud::{Markup, html};
 use palmistry_prove::claim::Outcome;
 use palmistry_workbench::paper::Findings;
 
 /// The names of the sections, which nothing else on the page may have.
-const SECTIONS: [&str; 13] = [
+const SECTIONS: [&str; 14] = [
     "equations",
     "errata",
     "extremes",
     "observers",
     "slow",
+    "space",
     "claims",
     "sources",
     "filter",
@@ -48,6 +51,8 @@ pub fn page(found: &Findings) -> String {
         found.experiments.iter().map(|(experiment, answers)| Observed::of(experiment, answers)).collect();
     let slow: Vec<SlowObserved<'_>> =
         found.slow.iter().map(|(experiment, answers)| SlowObserved::of(experiment, answers)).collect();
+    let space: Vec<SpaceObserved<'_>> =
+        found.space.iter().map(|(experiment, answers)| SpaceObserved::of(experiment, answers)).collect();
     let files: Vec<&str> = found.files.iter().map(|file| stem(&file.system.name)).collect();
     let systems: Vec<_> = found.files.iter().map(|file| &file.system).collect();
     let sections = || found.files.iter().zip(&names).filter(|(file, _)| has_a_section(file));
@@ -60,6 +65,7 @@ pub fn page(found: &Findings) -> String {
             @if let Some(heading) = extremes_heading(found) { a href="#extremes" { (heading) } }
             @if !experiments.is_empty() { a href="#observers" { "Bodies in motion" } }
             @if !slow.is_empty() { a href="#slow" { "Bodies at rest" } }
+            @if !space.is_empty() { a href="#space" { "Bodies in space" } }
             a href="#claims" { "All claims" }
             a href="#sources" { "The proof files" }
         }))
@@ -70,6 +76,7 @@ pub fn page(found: &Findings) -> String {
             @if let Some(heading) = extremes_heading(found) { (extremes(found, heading)) }
             @if !experiments.is_empty() { (observed_section(&experiments)) }
             @if !slow.is_empty() { (slow_section(&slow)) }
+            @if !space.is_empty() { (space_section(&space)) }
             (all_claims(&claims, &anchors, &files))
             (sources(&systems, &anchors))
         }

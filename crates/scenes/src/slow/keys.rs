@@ -255,6 +255,11 @@ fn checked(keys: Keys, places: &Places, name: &str, text: &str) -> Result<SlowSc
         return Err(wrong(place, format!("there would be {samples} samples"), &help));
     }
     let step = duration / (samples - 1) as f64;
+    // accelerations go with the square of a rate
+    if !step.powi(-2).is_normal() {
+        let message = format!("samples {step:.3e} s apart: rates are beyond any number");
+        return Err(wrong("duration", message, "give the duration in s"));
+    }
     if sensor.jitter > 0.8 * step {
         let message = format!("a jitter of {} s is too much for samples {step:.3e} s apart", sensor.jitter);
         return Err(wrong("sensor.jitter", message, "give at most 0.8 of the time between samples"));

@@ -7,7 +7,8 @@
 
 use super::local::{derivative, integral};
 use super::readings::{Sampled, SlowReadings};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, SVD};
+use palmistry_math::number::MOST_ITERATIONS;
 
 /// The polynomials through samples that are exact.
 const POINTS: usize = 14;
@@ -120,12 +121,19 @@ impl Quadrature {
                         }
                     }
                 }
-                let svd = matrix.svd(true, true);
+                let svd = decomposed(matrix)?;
                 let small = svd.singular_values.max() * 1e-11;
-                svd.solve(&side, small).map_or(0.0, |found| found[0])
+                svd.solve(&side, small).ok().map(|found| found[0])
             })
+            .map(|rate| rate.unwrap_or(0.0))
             .collect()
     }
+}
+
+/// The singular values of a matrix, unless a number in it is not finite.
+fn decomposed(matrix: DMatrix<f64>) -> Option<SVD<f64, Dyn, Dyn>> {
+    let is_finite = matrix.iter().all(|entry| entry.is_finite());
+    is_finite.then(|| matrix.try_svd(true, true, f64::EPSILON, MOST_ITERATIONS))?
 }
 
 /// Slopes of a noisy column: of the parabola that fits best over so many samples.
@@ -138,8 +146,8 @@ fn smoothed_slopes(times: &[f64], column: &[f64], window: usize) -> Vec<f64> {
             let u = |k: usize| (times[first + k] - times[row]) / unit;
             let matrix = DMatrix::from_fn(window, 3.min(window), |k, power| u(k).powi(power as i32));
             let side = DVector::from_fn(window, |k, _| column[first + k]);
-            let found = matrix.svd(true, true).solve(&side, 1e-12);
-            found.ok().and_then(|found| found.get(1).copied()).unwrap_or(0.0) / unit
+            let found = decomposed(matrix).and_then(|svd| svd.solve(&side, 1e-12).ok());
+            found.and_then(|found| found.get(1).copied()).unwrap_or(0.0) / unit
         })
         .collect()
 }

@@ -12,6 +12,7 @@ use super::linear::solved;
 use super::linearised::Linear;
 use super::whiten::ERRORS;
 use nalgebra::SMatrix;
+use palmistry_math::number::MOST_ITERATIONS;
 
 type Errors = Vec<[f64; ERRORS]>;
 /// A covariance of changes.
@@ -112,7 +113,10 @@ impl Settled {
     /// far from that. Infinite where it falls. `spread` is the covariance of changes.
     pub fn bent(&self, about: &About<'_>, scale: &Scale, spread: &Spread, curvature: &Square) -> f64 {
         let sizes = Spread::from_fn(|i, j| scale.of(i) * scale.of(j));
-        let eigen = spread.component_div(&sizes).symmetric_eigen();
+        let scaled = spread.component_div(&sizes);
+        let Some(eigen) = scaled.try_symmetric_eigen(f64::EPSILON, MOST_ITERATIONS) else {
+            return f64::INFINITY;
+        };
         let mut order: Vec<usize> = (0..UNKNOWNS).collect();
         order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
         let grown = |place: usize, side: f64| -> Option<f64> {

@@ -10,6 +10,7 @@ use super::vector::{PLACES, symmetric};
 use super::whiten::{Deviations, ERRORS};
 use super::{Rival, SolidReadings, SolidState, UNKNOWNS};
 use nalgebra::{Matrix3, SMatrix, Vector3};
+use palmistry_math::number::MOST_ITERATIONS;
 
 /// What refinement ends with.
 #[derive(Clone, Debug)]
@@ -155,7 +156,8 @@ fn sandwiched(information: &Square, curvature: &Square) -> Option<(SMatrix<f64, 
     let lower = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_fn(|i, j| triangle[i][j]);
     let inverse = lower.solve_lower_triangular(&SMatrix::identity())?;
     let relative = inverse * full(curvature) * inverse.transpose();
-    let eigen = ((relative + relative.transpose()) / 2.0).symmetric_eigen();
+    let symmetric = (relative + relative.transpose()) / 2.0;
+    let eigen = symmetric.try_symmetric_eigen(f64::EPSILON, MOST_ITERATIONS)?;
     let mut spread = eigen.eigenvectors;
     for (mut column, value) in spread.column_iter_mut().zip(eigen.eigenvalues.iter()) {
         column /= value.max(FLAT);

@@ -13,6 +13,7 @@ use super::whiten::Deviations;
 use super::{FEWEST, Rival, SolidReadings, UNKNOWNS};
 use crate::simulation::normal;
 use nalgebra::{Matrix3, Vector3};
+use palmistry_math::number::MOST_ITERATIONS;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -228,7 +229,10 @@ impl Search<'_> {
 /// Whether the contacts are on the body's outside, and its moments of inertia those of a body.
 fn is_body(found: &Refined) -> bool {
     let Some(state) = found.state() else { return false };
-    let mut moments = state.inertia_over_mass.symmetric_eigenvalues();
+    let Some(moments) = state.inertia_over_mass.try_symmetric_eigen(f64::EPSILON, MOST_ITERATIONS) else {
+        return false;
+    };
+    let mut moments = moments.eigenvalues;
     moments.as_mut_slice().sort_by(f64::total_cmp);
     let [a, b, c] = moments.into();
     let (readings, first) = (&found.corrected, &found.corrected.palms[0]);

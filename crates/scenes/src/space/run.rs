@@ -48,6 +48,21 @@ pub struct SpaceAnswers {
     pub shape: Option<SpaceShape>,
 }
 
+impl SpaceAnswers {
+    /// Whether some window is explained, and none has readings that no body explains. A window that does not tell all that is sought is a part
+    /// of the answer.
+    pub fn as_expected(&self) -> bool {
+        let mut verdicts = self.updates.iter().map(|update| update.verdict);
+        let wrong = |verdict| matches!(verdict, SpaceVerdict::DoesNotFit | SpaceVerdict::Lost);
+        !verdicts.clone().any(wrong) && verdicts.any(|verdict| verdict == SpaceVerdict::Fits)
+    }
+
+    /// Keeps no time on the wall.
+    pub fn forget_times(&mut self) {
+        self.updates.iter_mut().for_each(|update| update.seconds = f64::NAN);
+    }
+}
+
 impl SpaceExperiment {
     /// Simulates a scene, or takes its readings from a file: `data`, or else the one that the scene names.
     ///

@@ -1,6 +1,7 @@
 //! A rank by singular values: it is computed, and proves nothing.
 
 use nalgebra::DMatrix;
+use palmistry_math::number::MOST_ITERATIONS;
 
 /// A singular value below this part of the largest one is not counted. Rows are differentiated to rounding, so that those that should be zero are about 1e-15 of it.
 const COUNTED: f64 = 1e-9;
@@ -25,7 +26,11 @@ impl ComputedRank {
         // zero rows change nothing, and with them all directions come out
         let filled = rows.len().max(unknowns);
         let matrix = DMatrix::from_fn(filled, unknowns, |i, j| rows.get(i).map_or(0.0, |row| row[j]));
-        let svd = matrix.svd(false, true);
+        let Some(svd) = matrix.try_svd(false, true, f64::EPSILON, MOST_ITERATIONS) else {
+            // what cannot be decomposed says nothing
+            let nothing = vec![f64::NAN; unknowns];
+            return ComputedRank { rank: 0, singular_values: nothing, told: vec![false; unknowns] };
+        };
         let mut order: Vec<usize> = (0..unknowns).collect();
         order.sort_by(|a, b| svd.singular_values[*b].total_cmp(&svd.singular_values[*a]));
         let singular_values: Vec<f64> = order.iter().map(|place| svd.singular_values[*place]).collect();

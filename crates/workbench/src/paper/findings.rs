@@ -11,6 +11,7 @@ use palmistry_prove::certificate::RegionAnswer;
 use palmistry_prove::claim::Outcome;
 use palmistry_prove::drops::DropAnswer;
 use palmistry_scenes::slow::{SlowAnswers, SlowExperiment};
+use palmistry_scenes::space::{SpaceAnswers, SpaceExperiment};
 use palmistry_scenes::{Answer, Experiment};
 
 /// Lie derivatives of one output along one field, to high orders.
@@ -94,6 +95,8 @@ pub struct Findings {
     pub experiments: Vec<(Experiment, Vec<Answer>)>,
     /// Bodies at rest between slow palms, and what their readings tell.
     pub slow: Vec<(SlowExperiment, SlowAnswers)>,
+    /// Bodies in space on three palms, and what their readings tell.
+    pub space: Vec<(SpaceExperiment, SpaceAnswers)>,
     /// The seed of all that is drawn.
     pub seed: u64,
     /// Whether it was stopped before the end.
@@ -110,6 +113,7 @@ impl Findings {
             files: Vec::new(),
             experiments: Vec::new(),
             slow: Vec::new(),
+            space: Vec::new(),
             seed,
             interrupted: false,
             seconds: 0.0,
@@ -126,5 +130,6 @@ impl Findings {
         !self.interrupted
             && self.files.iter().all(FileFindings::ok)
             && self.slow.iter().all(|(_, answers)| answers.explained)
+            && self.space.iter().all(|(_, answers)| answers.as_expected())
     }
 }

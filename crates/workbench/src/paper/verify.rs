@@ -16,7 +16,9 @@ use palmistry_prove::certificate::certify_region;
 use palmistry_prove::claim::{decide_all, isolated};
 use palmistry_prove::drops::where_it_drops;
 use palmistry_scenes::slow::{SlowExperiment, SlowScene};
+use palmistry_scenes::space::{SpaceExperiment, SpaceScene};
 use palmistry_scenes::{Experiment, Scene};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -73,6 +75,9 @@ pub fn verify_into(
 ) -> Result<(), ReadError> {
     let begin = Instant::now();
     let systems = paper.systems()?;
+    // before anything is decided: a mistake in a scene costs no claim
+    let scenes = paper.scenes.iter().map(|scene| Observable::read(&paper.folder.join(scene)));
+    let scenes = scenes.collect::<Result<Vec<_>, _>>()?;
     let run = Run { paper, options, found, steps: steps(paper, &systems), done: AtomicU64::new(0) };
     {
         let mut found = run.found();
@@ -101,26 +106,56 @@ pub fn verify_into(
         };
         run.examine(place, system, &measured);
     }
-    for scene in paper.scenes.iter().take_while(|_| !run.stopped()) {
-        let path = paper.folder.join(scene);
-        if let Some(slow) = SlowScene::read(&path) {
-            let experiment = SlowExperiment::new(slow?, None)?;
-            let answers = experiment.run(&|| run.stopped(), &|_| ());
-            run.step(scene);
-            if !run.stopped() {
-                run.found().slow.push((experiment, answers));
-            }
-            continue;
-        }
-        let experiment = Experiment::new(Scene::read(&path)?, None)?;
-        let answers = experiment.run(options.interrupt, &|_| ())?;
-        run.step(scene);
-        run.found().experiments.push((experiment, answers));
+    for (scene, name) in scenes.into_iter().zip(&paper.scenes).take_while(|_| !run.stopped()) {
+        scene.observe(&run)?;
+        run.step(name);
     }
     let mut found = run.found();
     found.interrupted = run.stopped();
     found.seconds = begin.elapsed().as_secs_f64();
     Ok(())
+}
+
+/// A scene of a paper with its readings, of whichever kind it is.
+enum Observable {
+    Slow(Box<SlowExperiment>),
+    Space(Box<SpaceExperiment>),
+    Moving(Box<Experiment>),
+}
+
+impl Observable {
+    fn read(path: &Path) -> Result<Observable, ReadError> {
+        if let Some(scene) = SpaceScene::read(path) {
+            return Ok(Observable::Space(Box::new(SpaceExperiment::new(scene?, None)?)));
+        }
+        if let Some(scene) = SlowScene::read(path) {
+            return Ok(Observable::Slow(Box::new(SlowExperiment::new(scene?, None)?)));
+        }
+        Ok(Observable::Moving(Box::new(Experiment::new(Scene::read(path)?, None)?)))
+    }
+
+    /// What its readings tell; of a scene at rest or in space only what was followed to its end.
+    fn observe(self, run: &Run<'_>) -> Result<(), ReadError> {
+        match self {
+            Observable::Slow(experiment) => {
+                let answers = experiment.run(&|| run.stopped(), &|_| ());
+                if !run.stopped() {
+                    run.found().slow.push((*experiment, answers));
+                }
+            }
+            Observable::Space(experiment) => {
+                let answers = experiment.run(&|| run.stopped(), &|| ());
+                if !run.stopped() {
+                    run.found().space.push((*experiment, answers));
+                }
+            }
+            Observable::Moving(experiment) => {
+                let answers = experiment.run(run.options.interrupt, &|_| ())?;
+                run.found().experiments.push((*experiment, answers));
+            }
+        }
+        Ok(())
+    }
 }
 
 /// What is done of a file besides what it asks for.

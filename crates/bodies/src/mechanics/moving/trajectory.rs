@@ -119,6 +119,21 @@ impl Ended {
     }
 }
 
+/// In words, after "the motion".
+impl std::fmt::Display for Ended {
+    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Ended::Completed => write!(to, "completed"),
+            Ended::ContactLost { palm, time } => {
+                write!(to, "contact with palm {palm} lost at {time:.6} s: its force is zero")
+            }
+            Ended::PalmsParallel { time } => write!(to, "palms parallel at {time:.6} s"),
+            Ended::OutOfPalm { palm, time } => write!(to, "contact ran off palm {palm} at {time:.6} s"),
+            Ended::Failed { time, why } => write!(to, "failed at {time:.6} s: {why}"),
+        }
+    }
+}
+
 /// A sudden turn: the pose in which the body lay has ceased to be stable (3.43), and it falls to the next that is. Angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jump {

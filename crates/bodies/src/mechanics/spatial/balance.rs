@@ -4,6 +4,7 @@ use super::contact::Contacts;
 use super::orientation::Orientation;
 use super::scene::{SpatialScene, SpatialSceneError};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use palmistry_math::number::MOST_ITERATIONS;
 
 /// Newton's method takes no more steps than this.
 const MOST_STEPS: usize = 200;
@@ -54,8 +55,12 @@ pub fn balanced_orientation(scene: &SpatialScene) -> Result<Option<Orientation>,
             let change = potential(scene, &turned(&-step)).1 - potential(scene, &turned(&step)).1;
             curvature.set_column(i, &(change / (2.0 * STEP)));
         }
-        let SymmetricEigen { eigenvalues, eigenvectors } =
-            SymmetricEigen::new((curvature + curvature.transpose()) / 2.0);
+        let symmetric = (curvature + curvature.transpose()) / 2.0;
+        let Some(SymmetricEigen { eigenvalues, eigenvectors }) =
+            SymmetricEigen::try_new(symmetric, f64::EPSILON, MOST_ITERATIONS)
+        else {
+            return Ok(None);
+        };
         if moment.norm() <= 1e-13 * weight * size {
             // a saddle is left by rounding alone; along a symmetry nothing changes
             let stable = eigenvalues.iter().all(|value| *value > -1e-7 * weight * size);

@@ -4,6 +4,7 @@ use super::laws::Situation;
 use super::scene::{SpatialDrive, SpatialPalm, SpatialScene, SpatialSceneError};
 use crate::mechanics::moving::Oscillation;
 use nalgebra::Vector3;
+use palmistry_math::number::MOST_ITERATIONS;
 
 /// The tolerances that double precision and the method can serve.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-14..=1e-3;
@@ -84,7 +85,10 @@ impl SpatialScene {
         if !(size.is_finite() && symmetric) {
             return Err(SpatialSceneError::Inertia);
         }
-        let mut moments = inertia.symmetric_eigenvalues();
+        let Some(eigen) = inertia.try_symmetric_eigen(f64::EPSILON, MOST_ITERATIONS) else {
+            return Err(SpatialSceneError::Inertia);
+        };
+        let mut moments = eigen.eigenvalues;
         moments.as_mut_slice().sort_by(f64::total_cmp);
         let [a, b, c] = moments.into();
         // a flat body has c = a + b, but for rounding

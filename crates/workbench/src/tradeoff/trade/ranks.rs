@@ -5,7 +5,7 @@
 
 use faer::Mat;
 use nalgebra::{DMatrix, RealField};
-use palmistry_math::number::{Arithmetic, Floats, Interval, RealNumber};
+use palmistry_math::number::{Arithmetic, Floats, Interval, MOST_ITERATIONS, RealNumber};
 use palmistry_rank::observability::{certain_rank, rank, singular_values};
 
 /// What a way says of one matrix.
@@ -17,9 +17,6 @@ pub(super) enum RankVerdict {
     /// An entry is no number, or the decomposition gave up.
     Failed,
 }
-
-/// A singular value decomposition that takes more steps than this is given up.
-const MOST_ITERATIONS: usize = 10_000;
 
 /// Decides the ranks of blocks one after the other; `None` is a block that could not be computed.
 pub(super) type RankWay<'w, N> =

@@ -140,7 +140,7 @@ fn sines(values: &[f64]) -> (f64, Vec<Oscillation>, f64) {
     };
     let matrix = DMatrix::from_fn(times.len(), 2 * modes + 1, entry);
     let right = DVector::from_column_slice(values);
-    let found = matrix.clone().svd(true, true).solve(&right, 1e-13).unwrap();
+    let found = matrix.clone().try_svd(true, true, f64::EPSILON, 1000).unwrap().solve(&right, 1e-13).unwrap();
     let swing = |k: usize| {
         let (sine, cosine) = (found[2 * k - 1], found[2 * k]);
         Oscillation { amplitude: sine.hypot(cosine), frequency: frequency(k), phase: cosine.atan2(sine) }
