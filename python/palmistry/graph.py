@@ -1,13 +1,15 @@
 """Expressions as a graph in which what is equal stands once, and maps of it: derivatives, residues, enclosures."""
 
 import random
+from collections import defaultdict
 from fractions import Fraction
 from functools import cache
 from itertools import count
 from math import floor, isqrt
-from operator import add, mul
+from operator import add, attrgetter, mul
 
-WORK, MADE = 6_000_000, 10  # so many nodes are gone through for a verdict, of which one that is made counts for some
+# so many nodes are gone through for a verdict, and for all of a file; one that is made counts for some
+WORK, RUN, MADE = 6_000_000, 120_000_000, 10
 LONGEST, FINE = 100_000, 1 << 400  # bits of a fraction; parts of one to which bounds are rounded
 PI = Fraction(3141592653589793238462643383279502884197169399375105820974944592307816406286, 10**75)
 SERIES = {"exp": (1, 1, 1, 1), "sin": (0, 1, 0, -1), "cos": (1, 0, -1, 0)}  # times x^k/k!, by k modulo 4
@@ -15,7 +17,8 @@ RING = {"+": add, "*": mul, "^": pow}
 
 class Expression:
     """A `number`, a `symbol`, `+` or `*` of two nodes, `^` with a whole exponent, or a function such as `sin`."""
-    places, work = count(), 0
+    __slots__ = "kind", "args", "parts", "place"
+    places, work, left, began = count(), 0, RUN, RUN  # what a verdict has taken; what is left for all, now and when the graph was begun
 
     def __init__(self, kind, *args):
         self.kind, self.args, self.place = kind, args, next(self.places)
@@ -38,8 +41,12 @@ class Expression:
 
     def __pow__(self, n):
         if self.kind == "number" and (self.args[0] or n > 0):
-            return number(self.args[0] ** n)
+            return number(power(self.args[0], n))
         return {0: number(1), 1: self}.get(n) or Node("^", self, n)
+
+    def lacks(self):
+        """Whether there are arguments for which it has no value."""
+        return self.kind in ("sqrt", "log") or self.kind == "^" and self.args[1] < 0
 
     def below(self, known=()):
         """This node and all that it is made of, what is made behind what it is made of; not what is known."""
@@ -48,26 +55,44 @@ class Expression:
             seen |= new
             new = {part for node in new for part in node.parts if part not in known} - seen
         spend(len(seen))
-        return sorted(seen, key=lambda node: node.place)
+        return sorted(seen, key=attrgetter("place"))
+
+class Spent(Exception):
+    """That there is too much to do: it ends a verdict, and is no refusal that another way is tried after."""
 
 def spend(work):
-    Expression.work += work
+    Expression.work, Expression.left = Expression.work + work, Expression.left - min(work, WORK)
+    if Expression.left < 0:
+        raise Spent("the budget of work is spent")
     if Expression.work > WORK:
-        refuse(f"too much work: more than {WORK} nodes")
+        raise Spent(f"too much work: more than {WORK} nodes")
 
 Node = cache(Expression)
 def refuse(why): raise NotImplementedError(why)
+
+def forget():
+    """Begins a new graph: numbers are nodes, and are not kept without the others."""
+    for kept in (Node, number, turned):
+        kept.cache_clear()
+
 def short(x):
     """A fraction, and the work of an operation on it: as the square of its length."""
     length = x.numerator.bit_length() + x.denominator.bit_length()
     spend((length // 64) ** 2 // 64)
     return x if length < LONGEST else refuse("numbers of great length")
+def power(x, n):
+    """That of a fraction, whose length is told before it is made."""
+    return x**n if (x.numerator.bit_length() + x.denominator.bit_length()) * abs(n) < LONGEST else refuse("numbers of great length")
+
+@cache
 def number(value): return Node("number", short(Fraction(value)))
 def symbol(name): return Node("symbol", name)
 def call(kind, x): return turned(x)[kind == "cos"] if kind in ("sin", "cos") else Node(kind, x)
 
+@cache
 def turned(x):
     """The sine and the cosine: of sums and multiples, by those of the angles that a state tells."""
+    spend(MADE)
     n, of = (x.args[0].args[0], x.args[1]) if x.kind == "*" and x.args[0].kind == "number" else (Fraction(1), x)
     quarters = 2 * n if of is symbol("pi") else Fraction(0 if x is number(0) else 1, 2)
     if quarters.denominator == 1:
@@ -112,9 +137,9 @@ def derivation(rate):
 class Modulo(Map):
     """Residues: of symbols by chance, and of functions, the same of the same argument, which may be `guessed` then."""
 
-    def __init__(self, prime, seed):
+    def __init__(self, prime, seed, orders=None):
         super().__init__(self.residue)
-        self.prime, self.guessed = prime, False
+        self.prime, self.guessed, self.orders = prime, False, {} if orders is None else orders
         self.chance = lambda name: random.Random(f"{seed} {name}").randrange(prime)
 
     def residue(self, node, x, other=0):
@@ -131,12 +156,25 @@ class Modulo(Map):
         return {"sin": 2 * tangent * over, "cos": (1 - tangent**2) * over}.get(node.kind, tangent) % self.prime
 
     def gradient(self, root, names):
-        """The derivatives by symbols, from the root downwards."""
-        slopes = {root: 1}
-        for node in reversed(root.below()):
-            for part, by in zip(node.parts, SLOPES[node.kind](*node.args)):
-                slopes[part] = (slopes.get(part, 0) + slopes[node] * self[by]) % self.prime
-        return [slopes.get(symbol(name), 0) for name in names]
+        """The derivatives by symbols, from the root downwards; the order is the same at all points."""
+        if root not in self.orders:
+            self.orders[root] = [node for node in reversed(root.below()) if node.parts]
+        slopes, prime = defaultdict(int, {root: 1 + 0 * self[root]}), self.prime  # so that all below has a value
+        for node in self.orders[root]:
+            kind, slope = node.kind, slopes[node] % prime
+            if kind == "+":
+                a, b = node.parts
+                slopes[a] += slope
+                slopes[b] += slope
+            elif kind == "*":
+                a, b = node.parts
+                slopes[b] += slope * self[a]
+                if a.kind != "number":
+                    slopes[a] += slope * self[b]
+            else:
+                x, *n = node.args
+                slopes[x] += slope * (n[0] * pow(self[x], n[0] - 1, prime) if n else self[SLOPES[kind](x)[0]])
+        return [slopes[symbol(name)] % prime for name in names]
 
 class Interval:
     """Two fractions between which a number lies, rounded outward; or one, exactly, where there is only arithmetic."""
@@ -150,7 +188,7 @@ class Interval:
     def __mul__(self, other): return Interval(*(a * b for a in (self.low, self.high) for b in (other.low, other.high)))
 
     def __pow__(self, n):  # without a value where it holds zero and the power is negative
-        return Interval(self.low**n, self.high**n, *([Fraction(0) ** n] if self.low < 0 < self.high else []))
+        return Interval(power(self.low, n), power(self.high, n), *([Fraction(0) ** n] if self.low < 0 < self.high else []))
 
     def sign(self):
         is_told = self.low == self.high or not self.low <= 0 <= self.high

@@ -5,7 +5,7 @@ import re
 import stat
 from collections import defaultdict
 from functools import cache, reduce
-from operator import add, neg, sub
+from operator import add, attrgetter, neg, sub
 
 from .graph import Map, call, derivation, number, put_in, refuse, spend, symbol
 from .proof_parser import HOLDS, NAME, Parser, texts, without_comments
@@ -13,7 +13,8 @@ from .proof_parser import HOLDS, NAME, Parser, texts, without_comments
 ENTRY = re.compile(r"^[ \t]*(?=(?:system|use|state|param|angle|known|unknown|initial|experiments|let|drift|input|field"
                    r"|output|sample|claim|erratum|damaged|scan|convention|loose|definition|undecided|set|pole|map|line"
                    r"|reduction)\b)", re.M)
-LARGEST, MOST_CLAIMS = 16 << 20, 100_000  # bytes of a proof file; entries of one
+LARGEST, MOST_CLAIMS, MOST_NAMES = 16 << 20, 100_000, 2000  # bytes of a proof file; its entries; symbols of one kind
+READ, BYTES = 1000, 8  # what a file takes as work, and what as many bytes take as one node
 
 def each(do, *of): return Matrix(tuple(do(*x) for x in zip(*rows, strict=True)) for rows in zip(*of, strict=True))
 def entries(x): return [entry for row in x for entry in row]
@@ -27,6 +28,11 @@ class Relation(tuple):
 
 class Matrix(tuple):
     """Rows of expressions; a number is one of a single entry."""
+    def __new__(cls, rows):
+        found = super().__new__(cls, rows)
+        spend(sum(map(len, found)))
+        return found
+
     def __neg__(self): return each(neg, self)
     def __add__(self, other): return each(add, self, other)
     def __sub__(self, other): return each(sub, self, other)
@@ -34,6 +40,7 @@ class Matrix(tuple):
 
     def __mul__(self, other):
         if len(self[0]) == len(other):
+            spend(len(self) * len(other) * len(other[0]))
             return Matrix(tuple(dot(row, column) for column in zip(*other)) for row in self)
         factor, of = (self, other) if len(entries(self)) == 1 else (other, self)
         return each(lambda x: single(factor) * x, of)
@@ -60,6 +67,7 @@ def cross(a, b):
     return Matrix((a[i] * b[j] - a[j] * b[i],) for i, j in pairs)
 
 def blocks(rows):
+    spend(sum(len(x) * len(x[0]) for row in rows for x in row))
     found = Matrix(sum(parts, ()) for row in rows for parts in zip(*row, strict=True))
     return found if len({len(row) for row in found}) == 1 else refuse("blocks that do not fit")
 
@@ -97,6 +105,7 @@ class System:
 
     def __init__(self, path, depth=0):
         whole = read_text(path, LARGEST)
+        spend(READ + len(whole) // BYTES)
         text = re.sub(r'"[^"]*"|#[^\n]*', lambda x: " ".join(x[0].split()) * (x[0][0] == '"'), whole)
         self.digest, self.names, self.claims = digest(whole) if depth == 0 else "", defaultdict(list), {}
         self.lets, self.rates, self.known = {}, {}, {}
@@ -114,7 +123,9 @@ class System:
             elif kind == "let" and (found := re.fullmatch(r"(\w+)\s*(?::[^=]*)?=(.*)", rest, re.S)):
                 self.lets[found[1]] = found[2]
             elif kind in ("drift", "input", "field"):
-                name, *bodies = re.split(r"(\w+)'\s*=", rest)
+                if re.search(r"\+\s*=", rest):
+                    refuse("discrete time")
+                name, *bodies = re.split(r"\b(\w+)'\s*=", rest)
                 self.rates[name.strip()] = kind, dict(zip(bodies[::2], bodies[1::2]))
                 self.names["moving"] += [name.strip()] * (kind != "field")
             elif kind == "output":
@@ -124,6 +135,8 @@ class System:
                     self.claims.setdefault(name, said)
             elif kind in ("state", "param", "known", "initial", "unknown", "experiments"):
                 self.declare(kind, rest)
+            if max(map(len, self.names.values()), default=0) > MOST_NAMES:
+                refuse(f"more than {MOST_NAMES} symbols")
 
     def declare(self, kind, text):
         words = r"[\[@]|\b(?:state|param|let|drift|input|field|output)\b"
@@ -193,16 +206,43 @@ class System:
 
     def statement(self, text):
         """What a claim asks, of what, the answer, and the conditions."""
-        claim, *where = re.split(r"\bwhere\b", re.split(r"\b(?:everywhere|except|on)\b", text)[0])
+        self.parts, (claim, *where) = None, re.split(r"\bwhere\b", re.split(r"\b(?:everywhere|except|on)\b", text)[0])
+        self.said = [claim, *where]
         conditions = [x for text in where for x in self.read(text)]
-        if found := re.fullmatch(r"rank(?:\((.*)\))?=(\d{1,4})", "".join(claim.split())):
-            of = claim[claim.index("(") + 1:claim.rindex(")")] if found[1] else None
-            return "rank", self.read(of)[0] if of else None, int(found[2]), conditions
-        if found := re.match(r"\s*(un)?(?:observable|identifiable)\s*\(", claim):
-            inside = claim[found.end():claim.rindex(")")]
-            return f"{found[1] or ''}observable", [x for of in self.read(inside) for x in entries(of)], None, conditions
+        if re.fullmatch(r"\s*rank\s*=\s*\d{1,4}\s*", claim):
+            moving = [text for name in self.names["moving"] for text in self.rates[name][1].values()]
+            self.said = [*self.names["output"], *moving, *where]
+            return "rank", None, int(claim.split("=")[1]), conditions
+        if found := re.fullmatch(r"\s*(rank|(un)?(?:observable|identifiable))\s*\((.*)\)\s*(?:=\s*(\d{1,4})\s*)?", claim, re.S):
+            asked, un, inside, claimed = found.groups()
+            of, self.said = self.read(inside), [inside, *where]
+            if (asked == "rank") != (claimed is not None) or asked == "rank" and len(of) > 1:
+                refuse("a statement with more or less than it needs")
+            if asked == "rank":
+                return asked, of[0], int(claimed), conditions
+            return f"{un or ''}observable", [x for one in of for x in entries(one)], None, conditions
         of = self.read(claim)
         return "=", of[0] if len(of) == 1 else refuse("several statements"), None, conditions
+
+    def partial(self):
+        """The roots, logarithms and powers below nothing that stand in the statement, or in what it names: `0/x` is zero and has lost one."""
+        if self.parts is not None:
+            return self.parts
+        seen, found, waiting = set(), set(), [(self, text) for text in self.said]
+        for system, text in waiting:
+            parser = Parser(text, system)
+            parser.whole()
+            found |= {node for value in parser.met for x in entries(value) for node in x.below(found) if node.lacks()}
+            for name in {*re.findall(NAME, text)}:
+                owner, *rest = system, *name.split(".")
+                while len(rest) > 1:
+                    owner = owner.known[rest.pop(0)]
+                if (owner, rest[0]) not in seen:
+                    seen.add((owner, rest[0]))
+                    bodies = [owner.lets[rest[0]]] if rest[0] in owner.lets else owner.rates.get(rest[0], ("", {}))[1].values()
+                    waiting += [(owner, body) for body in bodies]
+        self.parts = sorted(found, key=attrgetter("place"))
+        return self.parts
 
     def left_out(self, text):
         """The sets behind `except where`, each as its relations."""

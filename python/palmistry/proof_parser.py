@@ -1,9 +1,10 @@
 """Terms and relations of a proof file, read by precedence: what is no term is refused, and nothing is handed to Python."""
 
 import re
+from itertools import islice
 from operator import add, eq, ge, gt, le, lt, ne, sub, truediv
 
-from .graph import refuse
+from .graph import refuse, spend
 
 NAME = r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*'*"
 TOKEN = re.compile(rf"(?P<number>(?:\d+\.?\d*|\.\d+)(?:e-?\d{{1,3}}\b)?)|(?P<name>{NAME})|(?P<mark>[<>!]=|[-+*/^()\[\]{{}},;=<>])"
@@ -18,8 +19,10 @@ class Parser:
     """One text, its tokens, and a `scope` that knows names, functions and matrices."""
 
     def __init__(self, text, scope):
-        self.tokens = [(x.lastgroup, x[0]) for x in TOKEN.finditer(text) if x.lastgroup != "space"]
-        self.scope, self.place, self.depth = scope, 0, 0
+        found = ((x.lastgroup, x[0]) for x in TOKEN.finditer(text) if x.lastgroup != "space")
+        self.tokens = [*islice(found, LONGEST + 1)]
+        self.scope, self.place, self.depth, self.met = scope, 0, 0, []
+        spend(len(self.tokens))
         if len(self.tokens) > LONGEST:
             refuse("a term that is too long")
         self.tokens.append(("end", ""))
@@ -67,6 +70,8 @@ class Parser:
         while sign := self.taken("*", "/"):
             negative, factor = self.signs(), self.factor()
             factor = -factor if negative else factor
+            if sign == "/":
+                self.met.append(factor ** self.scope.number("-1"))
             found = found * factor if sign == "*" else truediv(found, factor)
         return -found if minus else found
 
@@ -81,6 +86,7 @@ class Parser:
                 refuse("two exponents")
         while self.taken("at"):
             found = self.scope.at(found, self.bracketed("{", "}", self.given))
+        self.met.append(found)
         return found
 
     def given(self):
@@ -196,8 +202,9 @@ def texts(entry):
     body = body.strip()
     if kind == "claim" and colon:
         return {name: body.rstrip('"').strip()}
-    found = re.fullmatch(r'\w+\s*"?\s*(?:as\b)?(.*?)\b(?:corrected|repaired|meant)\b(.*)', body, re.S)
-    if kind not in ("erratum", "damaged", "scan", "convention", "loose") or found is None:
+    found = re.split(r"\b(?:corrected|repaired|meant)\b", body, maxsplit=1)
+    if kind not in ("erratum", "damaged", "scan", "convention", "loose") or len(found) == 1 or not re.match(r"\w", body):
         return {}
-    printed, right = (part.strip().strip('"').strip() for part in found.groups())
+    printed, right = re.sub(r"^\w+", "", found[0]).strip().removeprefix('"').strip(), found[1]
+    printed, right = (part.strip().strip('"').strip() for part in (re.sub(r"^as\b", "", printed), right))
     return {f"{name} as printed": printed, f"{name} corrected": right} if printed else {name: right}

@@ -19,13 +19,15 @@ from fractions import Fraction
 from math import prod
 from operator import sub
 
-from .graph import Expression, Interval, Map, Modulo, Node, call, enclosed, number, put_in, refuse, symbol
-from .proof_file import HOLDS, System, determinant, each, entries, read_text
+from .graph import (MADE, RUN, Expression, Interval, Map, Modulo, Node, Spent, call, derivation, enclosed, forget, number, put_in, refuse,
+                    short, spend, symbol)
+from .proof_file import BYTES, HOLDS, System, determinant, each, entries, read_text
 from .proof_parser import compact, parts
 
 PRIMES = (1 << 61) - 1, (1 << 89) - 1, (1 << 107) - 1
-POINTS, TRIES, WORDS, PIECES, MOST = 4, 40, 200, 500, 100_000  # compared; drawn; words; pieces of a box; nodes kept
-LARGEST = 1 << 28  # bytes of a verdict file
+POINTS, TRIES, WORDS, PIECES = 4, 40, 200, 500  # compared; drawn; words; pieces of a box
+MOST, FEE = 1_000_000, 100  # the work on one graph, behind which a new one is begun; of each record, whatever it is
+LARGEST, VALUES, DIGITS = 1 << 28, 1 << 25, 40  # bytes of a verdict file; its values, brackets for eight; digits of a number
 KINDS = "refuted", "proved", "rank", "claimed_rank", "boxes", "unchecked"
 WORDS_OF_FINDINGS = "confirmed", "half confirmed", "consistent", "not checked", "not confirmed"
 
@@ -42,6 +44,7 @@ def doubt(why): raise Doubt(why)
 
 def adds(row, basis, prime):
     """Whether a row is independent of a basis, to which it is added then, with a one in a column."""
+    spend(len(basis) * len(row) // 16)
     for column, other in basis.items():
         row = [(x - row[column] * y) % prime for x, y in zip(row, other)]
     column = next((column for column, x in enumerate(row) if x), None)
@@ -59,41 +62,58 @@ def solution(system, gap):
     turns = [(name, turn) for name in names for turn in (zero, number("1/2") * symbol("pi"))]
     return next((x for x in turns if Map(put_in, [x])[gap] is zero), None) or refuse("a condition that is not solved")
 
-def points(system, conditions, seed):
-    """Random points modulo primes on the set of the equations; inequalities hold somewhere, and do not matter."""
+def solved(system, conditions):
+    """What the equations among some conditions say of symbols: none is met in its own value or in a later one."""
     found = []
     for gap in [gap for relation in conditions if relation[1] == "=" for gap in gaps(relation)]:
         for given in found:
             gap = Map(put_in, [given])[gap]
         found += [solution(system, gap)] if gap is not number(0) else []
+    return found
+
+def points(given, seed):
+    """Random points modulo primes on the set of the equations; inequalities hold somewhere, and do not matter."""
+    orders = {}
     for draw in range(TRIES):
-        point = Modulo(PRIMES[draw % len(PRIMES)], (seed, draw))
+        point = Modulo(PRIMES[draw % len(PRIMES)], (seed, draw), orders)
         with suppress(ZeroDivisionError):
-            for name, value in reversed(found):
+            for name, value in reversed(given):
                 turns = {Node(kind, name): call(kind, value) for kind in ("sin", "cos")}
                 point.update({node: point[of] for node, of in {name: value, **turns}.items()})
             yield point
 
-def codistribution(system, point, patience):
+def motion(system, given):
+    """What is seen, and what differentiates it: with the values of constants put in, which commutes with that and is shorter."""
+    names, fixed = {*system.names["param"], "pi"} - {*system.names["state"], *system.names["unknown"]}, Map(put_in)
+    for name, value in reversed(given):
+        if all(node.args[0] in names for node in (name, *value.below()) if node.kind == "symbol"):
+            fixed[name] = fixed[value]
+    fields = [system[field].along for field in system.names["moving"]]
+    if not fixed:
+        return system.seen(), fields
+    return [fixed[x] for x in system.seen()], [derivation(lambda name, f=f: fixed[f[symbol(name)]]) for f in fields]
+
+def codistribution(system, point, moving, patience):
     """The rows of all words; those behind more words than `patience` that add nothing are not looked at."""
-    columns, words = system.names["state"] + system.names["unknown"], [(word, 0) for word in system.seen()]
-    rows, basis = [], {}
-    for word, idle in words:
+    columns, (seen, fields) = system.names["state"] + system.names["unknown"], moving
+    words, rows, basis = dict.fromkeys((word, 0) for word in seen), [], {}
+    waiting = [*words]
+    for word, idle in waiting:
         row = point.gradient(word, columns)
         rows.append([x for x, name in zip(row, columns) if name not in system.names["initial"]])
         idle = 0 if adds(row, basis, point.prime) else idle + 1
-        new = [(system[field].along[word], idle) for field in system.names["moving"] if idle <= patience]
-        words += [pair for pair in new if pair not in words]
+        new = dict.fromkeys((along[word], idle) for along in fields if idle <= patience)
+        waiting += [pair for pair in new if pair not in words]
+        words.update(new)
         if len(words) > WORDS:
             refuse(f"more than {WORDS} words")
     return rows
 
-def is_so(system, point, asked, of, claimed, conditions):
+def is_so(system, point, asked, of, claimed, moving, patience):
     """Whether an identity, a rank at almost all states, or what is observable there is so at a point; and the rank."""
     if asked == "=":
         return all(point[gap] == 0 for gap in gaps(of)) if of[1] == "=" else refuse("an inequality"), 0
-    patience, basis = len(conditions) + 1 if conditions else 0, {}
-    rows = each(point.__getitem__, of) if asked == "rank" and of else codistribution(system, point, patience)
+    basis, rows = {}, each(point.__getitem__, of) if asked == "rank" and of else codistribution(system, point, moving, patience)
     rank = sum(adds(row, basis, point.prime) for row in rows)
     if asked == "rank":
         return rank == claimed, rank
@@ -103,9 +123,11 @@ def at_random(system, record, _, seed):
     """An identity, or what is claimed of almost all states, at random points."""
     (asked, of, claimed, conditions), found, least = system.statement(system.claims[record["id"]]), 0, None
     is_proved, sense = record["verdict"] == "proved", record["asked"]["sense"]
-    for point in points(system, conditions, seed):
+    given, patience = solved(system, conditions), len(conditions) + 1 if conditions else 0
+    moving = None if asked == "=" or asked == "rank" and of else motion(system, given)
+    for point in points(given, seed):
         with suppress(ZeroDivisionError):
-            so, rank = is_so(system, point, asked, of, claimed, conditions)
+            so, rank = is_so(system, point, asked, of, claimed, moving, patience)
             if asked == "rank" and sense != "generic" and so and not is_proved:
                 refuse("a rank that is another at some states alone")
             if so != is_proved:
@@ -127,11 +149,11 @@ def of_a_rank(system, of, claimed, least, is_proved, where):
     most = min(len(of), len(of[0])) if of else len(system.columns())
     return ("confirmed", "the rank is full") if least == most else ("half confirmed", f"the rank is no less; no greater at {where}")
 
-def witness(state, *nodes):
-    """The point of a state, which gives a value to all that some nodes mention."""
-    point, named = Map(enclosed), {symbol("pi")}
+def witness(system, state, *nodes):
+    """The point of a state, which gives a value to all that some nodes mention, and to all that a statement is made of."""
+    point, named, parts = Map(enclosed), {symbol("pi")}, system.partial()
     for name, value in state.items():
-        of = symbol(name)
+        of = symbol(name) if name != "pi" else doubt("a value for pi")
         named.add(of)
         if "angle" in value:
             sine, cosine = (fraction(value["angle"][key]) for key in ("sin", "cos"))
@@ -141,6 +163,10 @@ def witness(state, *nodes):
             point[of] = Interval(fraction(value["number"])) if "number" in value else refuse("a value by an operation")
     if any(node.kind == "symbol" and node not in named for root in nodes for node in root.below()):
         refuse("a state that does not give all values")
+    for node in parts:  # what they alone mention may have any value
+        sign = point[node.args[0]].sign()
+        if sign == 0 and node.kind != "sqrt" or sign < 0 and node.kind != "^":
+            refuse("a state at which a term has no value")
     return point
 
 def all_gaps(*relations): return [gap for relation in relations for gap in gaps(relation)]
@@ -149,7 +175,7 @@ def refuted(system, record, evidence, _):
     asked, of, _, conditions = system.statement(system.claims[record["id"]])
     if asked != "=" or record["verdict"] != "refuted":
         doubt("a witness for what is no equation, or is proved")
-    point = witness(evidence["state"], *all_gaps(of, *conditions))
+    point = witness(system, evidence["state"], *all_gaps(of, *conditions))
     if not all(holds(point, condition) for condition in conditions) or holds(point, of):
         doubt("a condition does not hold at the witness, or what was refuted does")
     return "confirmed", "at its witness"
@@ -179,7 +205,8 @@ def exact_rank(rows, point):
         refuse("a rank of values that are not exact")
     for row in ([x.low for x in row] for row in found):
         for column, other in basis:
-            row = [x - row[column] * y for x, y in zip(row, other)]
+            spend(len(row))
+            row = [short(x - row[column] * y) for x, y in zip(row, other)]
         column = next((column for column, x in enumerate(row) if x), None)
         if column is not None:
             basis.append((column, [x / row[column] for x in row]))
@@ -195,12 +222,12 @@ def further_rows(system, words):
     units = [system.unit(name) for name in system.columns()]
     return [tuple(unit[x] for unit in units) for x in found]
 
-def not_denied(record, states, of, claimed, conditions, sets):
+def not_denied(system, record, states, of, claimed, conditions, sets):
     """That no state of a verdict's own evidence is one at which the rank is another than what was proved."""
     for state in states:
         with suppress(NotImplementedError):
             given = all_gaps(*conditions, *(x for one in sets for x in one))
-            point = witness(state["state"], *(x for row in of for x in row), *given)
+            point = witness(system, state["state"], *(x for row in of for x in row), *given)
             is_meant = all(holds(point, x) for x in conditions) and not any(all(holds(point, x) for x in one) for one in sets)
             rank = exact_rank(of, point) if is_meant else claimed
             if rank > claimed or rank < claimed and record["asked"]["sense"] != "generic":
@@ -211,13 +238,15 @@ def at_states(system, record, evidence, seed):
     states, is_listed = evidence["states"] or refuse("no states"), record["verdict"] == "found"
     if is_listed:
         of = system["rows"] if record["asked"]["what"] == "rows_at_states" else None
-        conditions, sets, claimed = system.read(record["asked"]["where"]) if record["asked"]["where"] else [], [], None
+        where = record["asked"]["where"]
+        system.statement(("rank = 0" if of is None else "rank(rows) = 0") + f" where {where}" * bool(where))
+        conditions, sets, claimed = system.read(where) if where else [], [], None
     else:
         text = system.claims[record["id"]]
         asked, of, claimed, conditions = system.statement(text)
         sets = system.left_out(text) if asked == "rank" else []
         if asked != "rank" or record["verdict"] == "proved":
-            return asked == "rank" and of and not_denied(record, states, of, claimed, conditions, sets) or at_random(system, record, evidence, seed)
+            return asked == "rank" and of and not_denied(system, record, states, of, claimed, conditions, sets) or at_random(system, record, evidence, seed)
     if not of and list(evidence["columns"]) != system.columns():
         doubt("columns that are others")
     if of and len(evidence["columns"]) != len(of[0]):
@@ -226,13 +255,13 @@ def at_states(system, record, evidence, seed):
     for state in states:
         root = minor(rows, evidence, state["minor"]["rows"], state["minor"]["columns"])
         mentioned = [x for row in of or [] for x in row]
-        point = witness(state["state"], root, *mentioned, *all_gaps(*conditions, *(x for one in sets for x in one)))
+        point = witness(system, state["state"], root, *mentioned, *all_gaps(*conditions, *(x for one in sets for x in one)))
         rank = len(state["minor"]["rows"])
         if not all(holds(point, condition) for condition in conditions):
             doubt("a condition does not hold at the state")
         if any(all(holds(point, relation) for relation in one) for one in sets):
             doubt("a state that the claim leaves out")
-        if rank != state["rank"] or rank and point[root].sign() == 0:
+        if type(state["rank"]) is not int or rank != state["rank"] or rank and point[root].sign() == 0:
             doubt("a minor is zero, or of another size")
         is_whole = bool(of) and (is_listed or record["asked"]["sense"] != "generic") and rank < len(of[0])
         if is_whole and exact_rank(of, point) != rank:
@@ -244,7 +273,7 @@ def at_states(system, record, evidence, seed):
         if not of and rank < len(evidence["columns"]):
             with suppress(NotImplementedError):
                 further = further_rows(system, evidence["words"])
-                if exact_rank(further, witness(state["state"], *(x for row in further for x in row))) > rank:
+                if exact_rank(further, witness(system, state["state"], *(x for row in further for x in row))) > rank:
                     doubt("a Lie derivative was left out, with which the rank is greater")
         ranks.append((rank, is_whole or rank == len(evidence["columns"])))
     if not is_listed or not any(rank for rank, _ in ranks):
@@ -255,24 +284,28 @@ def at_states(system, record, evidence, seed):
 def boxes(system, record, evidence, _):
     ranges = evidence["ranges"]
     whole = {symbol(side["symbol"]): (fraction(side["low"]), fraction(side["high"])) for side in ranges}
-    if len(whole) != len(ranges) or any(low > high for low, high in whole.values()):
-        doubt("a symbol with two ranges, or an empty one")
+    if len(whole) != len(ranges) or symbol("pi") in whole or any(low > high for low, high in whole.values()):
+        doubt("a symbol with two ranges, an empty one, or one of pi")
     of = system["rows"] if record["asked"]["what"] == "rows_on_boxes" else None
     if list(evidence["columns"]) != system.columns() or not evidence["boxes"]:
         doubt("other columns, or no boxes")
     rows = named_rows(system, evidence["words"], of)
+    system.statement("rank = 0" if of is None else "rank(rows) = 0")
     free, volume, seen = {name: ends for name, ends in whole.items() if ends[0] < ends[1]}, Fraction(0), []
-    for box in evidence["boxes"]:
-        sides = [(fraction(low), fraction(high)) for low, high in box["sides"]]
+    for given in evidence["boxes"]:
+        spend(MADE * len(seen))
+        sides = [(fraction(low), fraction(high)) for low, high in given["sides"]]
         if any(all(a < d and c < b for (a, b), (c, d) in zip(sides, other)) for other in seen):
             doubt("boxes have a part in common")
         parts = [(high - low) / (most - least) if least <= low < high <= most else doubt("a box lies outside")
                  for (least, most), (low, high) in zip(free.values(), sides, strict=True)]
         volume, seen = volume + prod(parts), [*seen, sides]
-        root = minor(rows, evidence, box["rows"], [*range(len(evidence["columns"]))])
-        if any(node.kind == "symbol" and node not in (*whole, symbol("pi")) for node in root.below()):
+        root = minor(rows, evidence, given["rows"], [*range(len(evidence["columns"]))])
+        box, there = {**whole, **dict(zip(free, sides))}, root.below()
+        lost = {*system.partial()}.difference(there)  # terms that the minor does not tell of
+        if any(node.kind == "symbol" and node not in (*whole, symbol("pi")) for of in (root, *lost) for node in of.below()):
             refuse("a symbol without a range")
-        if not is_nowhere_zero(system, root, {**whole, **dict(zip(free, sides))}):
+        if not all(x.kind == "^" and is_nowhere_zero(system, x.args[0], box) for x in lost) or not is_nowhere_zero(system, root, box):
             refuse(f"a box that is not shown by {PIECES} pieces")
     return ("confirmed", f"{len(seen)} boxes") if volume == fraction(evidence["volume"]) else doubt("another volume")
 
@@ -317,10 +350,11 @@ def bound(system, record, kind):
             doubt("it is filed under another name")
         return
     text = system.claims.get(record["id"]) or doubt("the proof file has no such claim")
+    spend(len(text) // BYTES)
     if compact(text) != "".join(record["statement"].split()) or parts(text) != asked:
         doubt("the claim of this id says something else")
-    if asked["where"].startswith("onsample"):
-        refuse("a claim on the sample box")
+    if re.search(r"\bon\b", text) or asked["sense"] in ("everywhere", "except") and not asked["what"].startswith("rank"):
+        refuse("a claim on the sample box, or at all states and of no rank")
     fits = {"refuted": word == "refuted", "proved": word == "proved", "boxes": False, "rank": True}
     if word not in ("proved", "refuted") or not fits.get(kind, True):
         doubt("evidence of another kind than the verdict")
@@ -328,16 +362,19 @@ def bound(system, record, kind):
 def check(record, folder, systems, seed):
     """What comes of one verdict: a word, and why."""
     try:
-        ((kind, evidence),), Expression.work = record["evidence"].items(), 0
+        Expression.work = 0
+        spend(FEE)
+        ((kind, evidence),) = record["evidence"].items()
         if kind not in KINDS:
             refuse("evidence of a kind that does not exist")
         if kind == "unchecked":
             return "not checked", str(evidence)
         path = os.path.join(folder, record["file"])
-        if path not in systems or Node.cache_info().currsize > MOST:
+        determinant.cache_clear()
+        if path not in systems or Expression.began - Expression.left > MOST:
             systems.clear()
-            Node.cache_clear()
-            determinant.cache_clear()
+            forget()
+            Expression.began = Expression.left
             systems[path] = System(path)
         system = systems[path]
         bound(system, record, kind)
@@ -347,11 +384,34 @@ def check(record, folder, systems, seed):
         return checks.get(kind, at_random)(system, record, evidence, seed)
     except Exception as why:  # whatever a damaged record or file leads to
         word = "not confirmed" if isinstance(why, Doubt) else "not checked"
-        return word, str(why) if type(why) in (NotImplementedError, Doubt) else repr(why)
+        return word, str(why) if type(why) in (NotImplementedError, Doubt, Spent) else repr(why)
 
 def plain(text):
     """A text of a stranger's file in one line: what cannot be printed is written as an escape, so that no line is forged."""
     return "".join(x if x.isprintable() else x.encode("unicode_escape", "surrogatepass").decode() for x in str(text))
+
+def unique(pairs):
+    """An object in which nothing is said twice: two readers may hold to another one of them."""
+    found = dict(pairs)
+    return found if len(found) == len(pairs) else wrong("a key that stands twice")
+
+def wrong(why): raise ValueError(why)
+
+def numeral(of):
+    """A reader of numbers that are short, and finite."""
+    return lambda text: of(text) if len(text) <= DIGITS and of(text) - of(text) == 0 else wrong("a number that is long or infinite")
+
+def verdict_file(path):
+    """The records of a verdict file, and their names."""
+    text = read_text(path, LARGEST)
+    if 8 * (text.count("{") + text.count("[")) + text.count(",") > VALUES:
+        wrong("too many values")
+    verdicts = json.loads(text, object_pairs_hook=unique, parse_int=numeral(int), parse_float=numeral(float), parse_constant=wrong)
+    if verdicts["schema"] != "palmistry-verdicts":
+        wrong("another schema")
+    if type(verdicts["version"]) is not int or verdicts["version"] != 3:
+        wrong(f"version {verdicts['version']!r} and not 3: before it verdicts were bound to no claims; write it anew")
+    return [(f"{record['file']} {record['id']}", record) for record in verdicts["verdicts"]]
 
 def main(arguments):
     """The command; returns its exit status."""
@@ -364,12 +424,7 @@ def main(arguments):
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(errors="backslashreplace")
     try:
-        verdicts = json.loads(read_text(path, LARGEST))
-        if verdicts["schema"] != "palmistry-verdicts":
-            raise ValueError("another schema")
-        if verdicts["version"] != 3:
-            raise ValueError(f"version {verdicts['version']!r} and not 3: before it verdicts were bound to no claims; write it anew")
-        records = [(f"{record['file']} {record['id']}", record) for record in verdicts["verdicts"]]
+        records, Expression.left, Expression.began = verdict_file(path), RUN, RUN
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as why:
         print(f"{plain(path)} is no verdict file: {plain(repr(why))}\n{__doc__}", file=sys.stderr)
         return 2
