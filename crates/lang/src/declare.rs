@@ -18,9 +18,6 @@ use palmistry_math::expression::{Derivation, Guard, NodeId, Symbol};
 
 /// No more experiments than these are made.
 const MOST_EXPERIMENTS: usize = 20;
-/// A system has no more states and unknown parameters, each counted once an experiment: the rank of a dense matrix of so many columns takes
-/// half a minute and 3 GB.
-const MOST_STATES: usize = 10_000;
 /// No higher derivatives are taken.
 const HIGHEST_DERIVATIVE: usize = 30;
 /// Of an unknown signal of which nothing else is said so many derivatives are taken not to vanish.
@@ -93,11 +90,6 @@ impl System {
             let message =
                 format!("something above is differentiated by all states, and '{}' is none yet", name.text);
             return Err(Problem::new(&name.span, message, "declare states before 'd(...)'"));
-        }
-        if self.states.len() >= MOST_STATES {
-            let message = format!("a system has at most {MOST_STATES} states and unknown parameters");
-            return Err(Problem::new(&name.span, message, "one too many")
-                .help("leave out what is not asked for, or declare a parameter that is known as 'param'"));
         }
         // the derivatives of a signal
         let symbol = match name.text.ends_with('\'') && kind == UnknownKind::Signal {

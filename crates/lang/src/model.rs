@@ -14,6 +14,9 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// The rank of a dense matrix of so many columns takes half a minute and 3 GB.
+const MOST_COLUMNS: usize = 10_000;
+
 /// What a symbol is in its system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -390,11 +393,12 @@ impl System {
         (line, before.map_or(0, |before| before.chars().count()) + 1)
     }
 
-    /// Nothing, where a field moves the states.
+    /// Nothing, where a field moves the states and a dense matrix has room for all of them.
     ///
     /// # Errors
     /// In words, with the line and the word to add, where no field is a drift or an input: a rank of such a system would be
-    /// that of its outputs alone, or of fields that were declared for something else.
+    /// that of its outputs alone, or of fields that were declared for something else. And where the states and unknown parameters,
+    /// counted once an experiment, are more than 10,000.
     pub fn require_motion(&self) -> Result<(), String> {
         match self.no_motion() {
             None => Ok(()),
@@ -410,12 +414,19 @@ impl System {
         }
     }
 
-    /// What is wrong with a rank where no field moves the states, at the first field, else at the beginning of the file.
+    /// What is wrong with a rank where no field moves the states or they are too many, at the first field, else at the beginning of the file.
     pub(crate) fn no_motion(&self) -> Option<Problem> {
-        if !self.moving_fields().is_empty() {
-            return None;
-        }
+        let moves = !self.moving_fields().is_empty();
         let problem = match self.fields.first() {
+            Some(field) if moves && self.states.len() > MOST_COLUMNS => {
+                let count = self.states.len();
+                let message = format!(
+                    "a rank is found of at most {MOST_COLUMNS} states and unknown parameters, and these are {count}"
+                );
+                Problem::new(&field.span, message, "what moves them")
+                    .help("leave out what is not asked for, or declare a parameter that is known as 'param'")
+            }
+            _ if moves => return None,
             Some(field) => {
                 let name = &field.name;
                 let message = format!(

@@ -39,6 +39,7 @@ impl MovingWindow {
             seconds: 0.0,
             end: UpdateEnd::Stuck,
             fit: None,
+            drifting: None,
             suspects: Vec::new(),
             is_heir: false,
             discounted: 0,
@@ -181,6 +182,7 @@ impl MovingWindow {
                 (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
                 let fit = self.fit(task, window, &expansion);
                 update.fit = Some(fit);
+                update.drifting = fit.drift.map(|own| task.full.outputs[own.output].clone());
                 let (loss, sigma) = window.loss;
                 let left = window.weighted(expansion.left.clone());
                 update.discounted = left.iter().filter(|value| loss.is_discounted(**value, sigma)).count();

@@ -2,6 +2,7 @@
 
 use super::chi_square::exceeded;
 use super::correlation::Neighbours;
+use super::drift::{Drift, Trend, slow_curves};
 use super::loss::Loss;
 use nalgebra::{DMatrix, DVector};
 
@@ -67,8 +68,8 @@ pub struct Fit {
     pub chi_square: f64,
     /// Readings less unknowns.
     pub degrees: usize,
-    /// How likely a misfit is that is no better, were the model right: of one so large (chi-square), or whose neighbours agree so much, where the noise
-    /// was stated; of one whose neighbours are so alike (von Neumann's ratio) where it was not.
+    /// How likely a misfit is that is no better, were the model right: of one so large (chi-square), whose neighbours agree so much, or that drifts so far, where the
+    /// noise was stated; of one whose neighbours are so alike (von Neumann's ratio) where it was not.
     pub probability: f64,
     /// Readings that no normal error explains, and that a robust loss leaves out of the test.
     pub outliers: usize,
@@ -76,6 +77,8 @@ pub struct Fit {
     pub readings: usize,
     /// The part of neighbours in the probability; none where they were not tested by themselves.
     pub neighbours: Option<f64>,
+    /// The part of slow curves in the probability; none where the noise was not stated, or samples are few.
+    pub drift: Option<Drift>,
     /// The standard deviation of a reading, in its unit.
     pub sigma: f64,
     /// Where it comes from.
@@ -90,9 +93,17 @@ impl Fit {
         self.outliers as f64 > MOST_OUTLIERS * self.readings as f64
     }
 
-    /// Whether it is the neighbours that agree too much, more than that the residuals are large.
+    /// Whether it is the neighbours that agree too much, more than that the residuals are large or drift.
     pub fn is_by_neighbours(&self) -> bool {
-        self.neighbours.is_some_and(|own| own <= self.probability)
+        self.by_drift().is_none() && self.neighbours.is_some_and(|own| own <= self.probability)
+    }
+
+    /// The drift of the residuals, where that is less likely than their size and their neighbours.
+    pub fn by_drift(&self) -> Option<Drift> {
+        let is_least = |own: &Drift| {
+            own.probability <= self.probability && self.neighbours.is_none_or(|other| own.probability < other)
+        };
+        self.drift.filter(is_least)
     }
 }
 
@@ -176,7 +187,9 @@ impl Misfit<'_> {
             let (residuals, outputs, relations) = (&kept[..], self.outputs, self.relations);
             Neighbours { residuals, outputs, relations, slopes, taken, sigma, coherent }.probability()
         });
-        let probability = alike.map_or(large, |alike| least_of([large, alike]));
+        let drift = self.slopes.filter(|slopes| normal > 0.0 && slopes.nrows() == kept.len());
+        let drift = drift.and_then(|slopes| self.drift(&kept, slopes, sigma, coherent));
+        let probability = least_of([Some(large), alike, drift.map(|own| own.probability)]);
         let chi_square = (length / sigma).powi(2);
         let from = NoiseFrom::Stated;
         let fit = Fit {
@@ -186,11 +199,25 @@ impl Misfit<'_> {
             outliers,
             readings,
             neighbours: alike,
+            drift,
             sigma,
             from,
             fits: false,
         };
         Fit { fits: degrees > 0 && !fit.has_outliers() && probability >= self.alarm, ..fit }
+    }
+
+    /// How far residuals drift of which those that count are given, with their derivatives.
+    fn drift(&self, kept: &[Option<f64>], slopes: &DMatrix<f64>, sigma: f64, coherent: f64) -> Option<Drift> {
+        let residuals = DVector::from_fn(kept.len(), |i, _| kept[i].unwrap_or(0.0) / sigma);
+        let mut slopes = slopes.clone();
+        (0..kept.len()).filter(|i| kept[*i].is_none()).for_each(|i| slopes.row_mut(i).fill(0.0));
+        let (followed, outputs) = (&slopes.qr().q(), self.outputs);
+        let samples = kept.len().saturating_sub(self.relations).div_ceil(outputs.max(1));
+        let coherent = coherent / sigma * (samples as f64).sqrt();
+        let trend = Trend { residuals: &residuals, followed, outputs, coherent };
+        let counts = |place: usize| kept[place].is_some();
+        trend.drift(|output| slow_curves(kept.len(), (outputs, output, self.relations), counts))
     }
 
     /// By what is left itself: independent errors differ from their neighbours by twice their variance in the mean, the remains
@@ -206,7 +233,18 @@ impl Misfit<'_> {
         let probability = if computed { 1.0 } else { self.independent() };
         let fits = degrees > 0 && probability >= self.alarm && rms.is_finite();
         let readings = self.differences.len().saturating_sub(self.relations);
-        Fit { chi_square, degrees, probability, outliers: 0, readings, neighbours: None, sigma, from, fits }
+        Fit {
+            chi_square,
+            degrees,
+            probability,
+            outliers: 0,
+            readings,
+            neighbours: None,
+            drift: None,
+            sigma,
+            from,
+            fits,
+        }
     }
 
     /// The probability of neighbours so alike, the least over the outputs times their number.
@@ -234,10 +272,12 @@ impl Misfit<'_> {
     }
 }
 
-/// The probability that the least of two independent probabilities is no larger (L. H. C. Tippett, The Methods of Statistics, 1931).
-pub(super) fn least_of(two: [f64; 2]) -> f64 {
-    let least = two[0].min(two[1]);
-    if least.is_nan() { 0.0 } else { least * (2.0 - least) }
+/// The probability that the least of some independent probabilities is no larger (L. H. C. Tippett, The Methods of Statistics, 1931).
+pub(super) fn least_of<const N: usize>(all: [Option<f64>; N]) -> f64 {
+    let count = all.iter().flatten().count();
+    // one that is no number is of residuals that are none
+    let least = all.into_iter().flatten().map(|one| if one.is_nan() { 0.0 } else { one }).fold(1.0, f64::min);
+    -(count as f64 * (-least).ln_1p()).exp_m1()
 }
 
 /// Whether differences of two outputs in turn are what stated errors explain, after so many unknowns were fitted: `size` is the root of the mean square

@@ -17,6 +17,7 @@ mod bound;
 mod calibration;
 mod chi_square;
 mod correlation;
+mod drift;
 mod errors_in_variables;
 mod filtered;
 mod fit;
@@ -65,6 +66,7 @@ pub use calibration::CalibrationKind;
 pub use calibration::{Sought, declare, sought};
 #[doc(hidden)]
 pub use chi_square::exceeded_with;
+pub use drift::Drift;
 #[doc(hidden)]
 pub use fit::explains;
 pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom, ReadingErrors};

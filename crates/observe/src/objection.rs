@@ -22,6 +22,8 @@ pub struct MotionRankFound {
     pub rank: usize,
     /// How many states are followed.
     pub of: usize,
+    /// So many derivatives of each output were taken beside it: more may see more.
+    pub order: usize,
     /// Whether each of them is proved for its state, taken as the doubles are.
     pub certified: bool,
     /// The least singular value at the sample of the worst condition, equilibrated, of what remains without unit rows.
@@ -41,7 +43,7 @@ pub struct MotionRankFound {
 pub enum Objection {
     /// Its equations have a pole on the way.
     Pole(PoleMet),
-    /// Its state is not seen at some moment.
+    /// The outputs and so many of their derivatives do not tell its state at some moment.
     Short {
         /// The rank there.
         rank: usize,
@@ -49,6 +51,8 @@ pub enum Objection {
         of: usize,
         /// In s.
         at: f64,
+        /// Derivatives that were taken.
+        order: usize,
     },
     /// Its state is hardly seen at some moment.
     Condition {
@@ -65,7 +69,9 @@ impl fmt::Display for Objection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Objection::Pole(PoleMet { divisor, time }) => write!(f, "a pole, {divisor} = 0 at {time:.4} s"),
-            Objection::Short { rank, of, at } => write!(f, "rank {rank} of {of} at {at:.4} s"),
+            Objection::Short { rank, of, at, order } => {
+                write!(f, "rank {rank} of {of} at {at:.4} s, of the outputs and {order} derivatives of each")
+            }
             Objection::Condition { condition, at } => write!(f, "condition {condition:.1e} at {at:.4} s"),
             Objection::Lost(why) => write!(f, "its equations cannot be followed: {why}"),
         }
@@ -93,9 +99,9 @@ impl MotionRankFound {
         if let Some(why) = &self.lost {
             return Some(Objection::Lost(why.clone()));
         }
-        let Self { rank, of, condition, at, .. } = *self;
+        let Self { rank, of, condition, at, order, .. } = *self;
         if rank < of {
-            return Some(Objection::Short { rank, of, at });
+            return Some(Objection::Short { rank, of, at, order });
         }
         (condition > limit).then_some(Objection::Condition { condition, at })
     }

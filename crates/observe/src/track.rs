@@ -76,6 +76,8 @@ pub struct Update {
     pub end: UpdateEnd,
     /// How well it explains the readings, where it was found out.
     pub fit: Option<Fit>,
+    /// The name of the output whose residuals drift most, where that was tested.
+    pub drifting: Option<String>,
     /// Whether it counts what the windows before it have learned, beside its own readings.
     pub is_heir: bool,
     /// Readings beyond the corner of a robust loss.
@@ -168,8 +170,17 @@ impl Track {
         !self.estimates.is_empty() && follows && self.innovations.is_none_or(|own| own.fits)
     }
 
-    /// Whether one of its updates is borne out by the readings, and none is contradicted: of methods that work by windows.
+    /// The first of its updates whose search did not come to its end, or whose model could not be followed: what is believed there, and of an angle that is
+    /// integrated from there on, nothing bears out.
+    pub fn unanswered(&self) -> Option<&Update> {
+        self.updates.iter().find(|update| matches!(update.end, UpdateEnd::StepsSpent | UpdateEnd::Lost(_)))
+    }
+
+    /// Whether one of its updates is borne out by the readings, none is contradicted and each search came to an end: of methods that work by windows. A window in which
+    /// the model has a pole is no fault of either.
     pub fn is_sound(&self) -> bool {
-        self.updates.iter().any(Update::is_borne_out) && !self.is_contradicted()
+        let borne_out = self.updates.iter().any(Update::is_borne_out);
+        let has_ended = self.updates.iter().all(|update| update.end != UpdateEnd::StepsSpent);
+        borne_out && has_ended && !self.is_contradicted()
     }
 }

@@ -11,7 +11,8 @@
 //! own sample, beside what the readings do through the motion.
 
 use super::chi_square::exceeded;
-use super::fit::{Fit, Noise, NoiseFrom, ReadingErrors};
+use super::drift::{Drift, Trend, slow_curves};
+use super::fit::{Fit, Noise, NoiseFrom, ReadingErrors, least_of};
 use super::loss::Loss;
 use super::sensitivity::Sensitivity;
 use super::task::Task;
@@ -179,11 +180,12 @@ impl Weights {
         let out = left.iter_mut().filter(is_out).map(|value| *value = 0.0).count();
         let degrees = degrees.saturating_sub(out);
         let chi_square = left.norm_squared() / (self.unit * self.unit);
-        let rest = self.unexplained(&left, slopes, computed).unwrap_or(f64::NAN);
-        let probability = match rest {
+        let (rest, drift) = self.unexplained(&left, slopes, computed).unwrap_or((f64::NAN, None));
+        let large = match rest {
             rest if rest <= 0.0 => 1.0,
             rest => exceeded(rest * rest, degrees as f64),
         };
+        let probability = least_of([Some(large), drift.map(|own| own.probability)]);
         let (sigma, from, readings) = (self.unit, NoiseFrom::Stated, left.len());
         let fit = Fit {
             chi_square,
@@ -192,6 +194,7 @@ impl Weights {
             outliers: out,
             readings,
             neighbours: None,
+            drift,
             sigma,
             from,
             fits: false,
@@ -199,7 +202,13 @@ impl Weights {
         Fit { fits: degrees > 0 && !fit.has_outliers() && probability >= alarm, ..fit }
     }
 
-    fn unexplained(&self, left: &DVector<f64>, slopes: &DMatrix<f64>, computed: f64) -> Option<f64> {
+    /// How long what normal errors have to explain is, and how far it drifts.
+    fn unexplained(
+        &self,
+        left: &DVector<f64>,
+        slopes: &DMatrix<f64>,
+        computed: f64,
+    ) -> Option<(f64, Option<Drift>)> {
         let recursion = self.recursion();
         let own = |i: usize| own_variance(&self.outputs, i) + self.least + computed * computed;
         let factor = recursion.whitening(&own)?;
@@ -228,7 +237,13 @@ impl Weights {
             allowed += together.min((3.0 * runs.len() as f64).sqrt());
         }
         let rest = left.norm() - allowed;
-        rest.is_finite().then_some(rest)
+        let outputs = self.outputs.len();
+        let curves = |output: usize| {
+            let curves = slow_curves(left.len(), (outputs, output, 0), |_| true)?;
+            Some(each_column(&curves, |column| factor.whitened(&recursion, column)))
+        };
+        let trend = Trend { residuals: &left, followed: &directions, outputs, coherent: allowed };
+        rest.is_finite().then(|| (rest, trend.drift(curves)))
     }
 }
 

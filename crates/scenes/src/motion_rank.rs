@@ -51,6 +51,8 @@ pub struct MotionRank {
     columns: Vec<usize>,
     /// How many states are followed: the rank where all is seen.
     pub of: usize,
+    /// So many derivatives of each output are among the rows.
+    order: usize,
 }
 
 impl MotionRank {
@@ -95,7 +97,7 @@ impl MotionRank {
         let proof = ProofWanted { wanted: Certainty::Computed, field };
         let rows = DecidedRows { quick: &entries, all: &entries, columns: model.symbols.len() };
         let decider = RankDecider::new(&graph, Defined::default(), rows, |_| false, proof).owning();
-        MotionRank { decider, values, divisors, columns, of: model.symbols.len() }
+        MotionRank { decider, values, divisors, columns, of: model.symbols.len(), order }
     }
 
     /// What it says of the motion through all samples of a task, from these values of what is sought at the first; outputs that are states are where they
@@ -107,6 +109,7 @@ impl MotionRank {
             decided: 0,
             rank: self.of,
             of: self.of,
+            order: self.order,
             certified: true,
             smallest: f64::NAN,
             condition: 0.0,

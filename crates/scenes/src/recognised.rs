@@ -96,6 +96,7 @@ mod tests {
             outliers: 0,
             readings: 100,
             neighbours: None,
+            drift: None,
             sigma: 1.0,
             from: NoiseFrom::Stated,
             fits,

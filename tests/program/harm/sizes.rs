@@ -99,9 +99,9 @@ fn a_slow_motion_of_no_time_ends() {
     }
 }
 
-/// Many sets are entered, and more states than a dense matrix has room for are refused where they are declared.
+/// Many sets are entered; and of more states than a dense matrix has room for everything is decided but ranks.
 #[test]
-fn many_sets_are_read_and_too_many_states_are_refused() {
+fn many_sets_are_read_and_ranks_of_too_many_states_are_refused() {
     let head = "system \"a\"\nstate x\n".to_owned();
     let sets = (0..64_000).fold(head, |text, i| text + &format!("set \"{i}\": x = {i}\n"));
     assert_eq!(System::parse("a.proof", &sets, Path::new("")).unwrap().sets.len(), 64_000);
@@ -112,10 +112,21 @@ fn many_sets_are_read_and_too_many_states_are_refused() {
         ("there is a set \"7\" already".to_owned(), 64_003)
     );
 
-    let names = |count: usize| (0..count).map(|i| format!("x{i}")).collect::<Vec<_>>().join(", ");
-    let system =
-        |count| System::parse("a.proof", &format!("system \"a\"\nstate {}\n", names(count)), Path::new(""));
-    assert_eq!(system(10_000).unwrap().states.len(), 10_000);
-    let error = system(10_001).unwrap_err();
-    assert_eq!(error.to_string(), "a system has at most 10000 states and unknown parameters");
+    let text = |count: usize, claim: &str| {
+        let names = (0..count).map(|i| format!("x{i}")).collect::<Vec<_>>().join(", ");
+        format!(
+            "system \"a\"\nstate {names}\ndrift f\n x0' = x1\n others' = 0\noutput x0\nclaim 1: {claim}\n"
+        )
+    };
+    let parsed = |count, claim| System::parse("a.proof", &text(count, claim), Path::new(""));
+    assert_eq!(parsed(10_000, "rank = 2").unwrap().claims.len(), 1);
+    assert_eq!(parsed(10_001, "L(f, x0) = x1").unwrap().claims.len(), 1);
+    let words = "a rank is found of at most 10000 states and unknown parameters, and these are 10001";
+    let error = parsed(10_001, "rank = 2").unwrap_err();
+    assert_eq!(error.to_string(), format!("claim 1: {words}"));
+
+    let folder = folder();
+    let path = write(&folder, "many.proof", &text(10_001, "L(f, x0) = x1"));
+    let said = refused(&["rank", path.to_str().unwrap()]);
+    assert!(said.contains("a rank is found of at most 10000"), "{said}");
 }

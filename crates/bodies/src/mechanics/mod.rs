@@ -31,6 +31,7 @@ mod harmonics;
 pub mod linear;
 mod motion;
 pub mod moving;
+mod pace;
 mod palm;
 mod precise;
 mod quasistatics;

@@ -31,37 +31,42 @@ impl RecordRows {
 /// Cells of needed columns have to hold finite numbers. Times have to increase: as few rows as possible are blamed
 /// when they do not, and among equals the later ones. A step in time of more than `1.5 * usual + 3 * jitter`, where
 /// `usual` is the median step, is a gap; rows in between whose times cannot be used count as usual steps. What a
-/// spike is stands at the head of `spike.rs`.
+/// spike is stands at the head of `spike.rs`. Of more than [`MOST_FAULTS`] the rest is left out.
 pub fn faults_of(rows: &RecordRows, rules: &FaultRules) -> Vec<Fault> {
+    let room = |faults: &Vec<Fault>| (MOST_FAULTS + 1).saturating_sub(faults.len());
     let mut faults = unreadable(rows);
-    for (row, place) in rows.rows.iter().enumerate() {
-        for &column in &rows.needed {
-            if let Some(Cell::Number(value)) = place.cells.get(column)
-                && !value.is_finite()
-            {
-                faults.push(rows.fault(row, Some(column), FaultKind::NotFinite { value: *value }));
-            }
+    let cells = rows.rows.iter().enumerate().flat_map(|(row, place)| {
+        rows.needed.iter().map(move |column| (row, *column, place.cells.get(*column)))
+    });
+    let infinite = cells.filter_map(|(row, column, cell)| match cell {
+        Some(Cell::Number(value)) if !value.is_finite() => {
+            Some(rows.fault(row, Some(column), FaultKind::NotFinite { value: *value }))
         }
-    }
+        _ => None,
+    });
+    let left = room(&faults);
+    faults.extend(infinite.take(left));
     let time = |row: usize| rows.rows[row].cells.get(rows.needed[0]).and_then(Cell::finite);
     let timed: Vec<(usize, f64)> = (0..rows.rows.len()).filter_map(|row| Some((row, time(row)?))).collect();
     let order = Order::of(&timed);
-    for (row, kind) in gaps(&order, rules.jitter) {
-        faults.push(rows.fault(row, None, kind));
-    }
-    for (row, kind) in order.blamed {
-        faults.push(rows.fault(row, Some(rows.needed[0]), kind));
-    }
+    let times = gaps(&order, rules.jitter).into_iter().map(|(row, kind)| rows.fault(row, None, kind));
+    let left = room(&faults);
+    faults.extend(times.take(left));
+    let blamed = order.blamed.into_iter().map(|(row, kind)| rows.fault(row, Some(rows.needed[0]), kind));
+    let left = room(&faults);
+    faults.extend(blamed.take(left));
     for &column in &rows.needed[1..] {
         let resolution = rules.resolution.get(&rows.names[column]).copied().unwrap_or(0.0);
         let value = |row: usize| rows.rows[row].cells.get(column).and_then(Cell::finite);
         let points: Vec<(usize, f64, f64)> =
             order.kept.iter().filter_map(|(row, time)| Some((*row, *time, value(*row)?))).collect();
         let series: Vec<(f64, f64)> = points.iter().map(|(_, time, value)| (*time, *value)).collect();
-        for (index, departure) in spikes(&series, rules.spike, resolution) {
+        let spike = |(index, departure): (usize, f64)| {
             let (row, _, value) = points[index];
-            faults.push(rows.fault(row, Some(column), FaultKind::Spike { value, departure }));
-        }
+            rows.fault(row, Some(column), FaultKind::Spike { value, departure })
+        };
+        let left = room(&faults);
+        faults.extend(spikes(&series, rules.spike, resolution).into_iter().map(spike).take(left));
     }
     faults.sort_by_key(|fault| fault.row);
     faults

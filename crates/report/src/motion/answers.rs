@@ -108,6 +108,9 @@ pub(super) fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
             "noise": finite(fit.sigma),
             "noise_from": noise_from(fit.from),
         });
+        if let (Some(drift), Some(output)) = (fit.drift, &update.drifting) {
+            found["fit"]["drift"] = json!({ "output": output, "probability": drift.probability });
+        }
     }
     if update.is_heir {
         found["inherits"] = json!(true);

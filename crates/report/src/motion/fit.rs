@@ -53,6 +53,11 @@ pub(super) fn unexplained(update: &Update, fit: &Fit) -> String {
         NoiseFrom::Stated if fit.has_outliers() => {
             format!("{} readings are beyond what normal errors reach, more than a tenth", fit.outliers)
         }
+        NoiseFrom::Stated if let (Some(_), Some(output)) = (fit.by_drift(), &update.drifting) => format!(
+            "a misfit of {misfit:.1e} for a noise of {:.1e}, and the residuals drift, those of {output} most: {}",
+            fit.sigma,
+            p_in_words(probability)
+        ),
         NoiseFrom::Stated if fit.is_by_neighbours() => format!(
             "a misfit of {misfit:.1e} for a noise of {:.1e}, whose neighbours agree too much for independent errors: {}",
             fit.sigma,

@@ -13,6 +13,7 @@ fn rank_json(rank: &MotionRankFound, objection: Option<&Objection>) -> Value {
         "samples": rank.asked,
         "rank": rank.rank,
         "of": rank.of,
+        "derivatives": rank.order,
         "certified": rank.certified,
         "smallest_singular_value": finite(rank.smallest),
         "condition": finite(rank.condition),

@@ -65,13 +65,15 @@ fn conclusion(answer: &DropAnswer) -> Markup {
             }
         }
         p {
-            @if answer.is_exact() { "Proved: all" } @else { "So far" }
+            @if cases == 0 { "No case was looked at." } @else if answer.is_exact() { "Proved: all" } @else { "So far" }
+            @if cases > 0 {
             " states were taken apart into " (cases) @if cases == 1 { " case" } @else { " cases" }
             ", " (empty) " of them empty; "
             (answer.minors.len()) @if answer.minors.len() == 1 { " minor" } @else { " minors" }
             ", each a product of factors that do not vanish on its case, "
             @if answer.minors.len() == 1 { "shows" } @else { "show" }
             " the rank to be no lower there."
+            }
             @if let Some(why) = &answer.out_of_reach { " " span.bad { "The search ended early: " (why) "." } }
         }
     }

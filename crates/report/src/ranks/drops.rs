@@ -176,7 +176,11 @@ pub fn drops_text(answer: &DropAnswer) -> String {
         let _ = writeln!(out, "minor {}: of {}", place(&minor.equations, &[]), minor.rows.join(", "));
         let _ = writeln!(out, "  {product}");
     }
-    let _ =
-        writeln!(out, "{} cases, {} of them empty, {:.1} s", answer.cases.0, answer.cases.1, answer.seconds);
+    // cut off before its first case it has none to count
+    let counted = match answer.cases {
+        (0, _) => String::new(),
+        (cases, empty) => format!("{cases} cases, {empty} of them empty, "),
+    };
+    let _ = writeln!(out, "{counted}{:.1} s", answer.seconds);
     out
 }

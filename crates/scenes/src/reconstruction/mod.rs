@@ -58,6 +58,8 @@ impl Experiment {
             Err(found) => apart = found,
         }
         let (shape, coverage) = from_track(&track, !answer.track.updates.is_empty());
+        // the orientation of all windows after it hangs on one that has no answer
+        let shape = shape.filter(|_| answer.track.unanswered().is_none());
         Some(Reconstruction { track, shape, coverage, whole: None, contradiction, apart })
     }
 
@@ -81,6 +83,13 @@ impl Experiment {
                     found.whole.as_ref().map(|whole| agreement::strays(&self.names(), answer, whole));
                 for (place, seam, why) in strays.into_iter().flatten() {
                     answer.track.updates[place].seam = Some(seam);
+                    answer.track.remarks.push(why);
+                }
+                if let Some(update) = answer.track.unanswered().filter(|_| found.whole.is_none()) {
+                    let why = format!(
+                        "no outline is told by windows: from {:.3} s there is no answer",
+                        update.from
+                    );
                     answer.track.remarks.push(why);
                 }
                 answer.reconstruction = Some(Box::new(found));

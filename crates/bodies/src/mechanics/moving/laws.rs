@@ -19,6 +19,7 @@ use super::breach::Breach;
 use super::drive::Drive;
 use super::plane::{Plane, along, cross, dot, left_of, meet, scaled, unit};
 use super::scene::MovingScene;
+use crate::mechanics::pace::longest_step;
 use crate::mechanics::palm::Palm;
 use std::f64::consts::FRAC_PI_2;
 
@@ -96,6 +97,11 @@ impl Touching {
 }
 
 impl MovingScene {
+    /// The longest step of the integrator, in s, in a motion that goes on until `last`.
+    pub(super) fn longest_step(&self, last: f64) -> f64 {
+        longest_step(last, self.gyration, self.rate, self.gravity)
+    }
+
     /// The state at time zero.
     pub(super) fn start(&self) -> State {
         let mut state = [self.orientation, self.rate, 0.0, 0.0, 0.0, 0.0, 0.0];

@@ -7,10 +7,6 @@ use super::scene::{MovingScene, SceneError};
 use super::trajectory::{Ended, Moment, Trajectory};
 use palmistry_io::foreign::{Allowance, Budget};
 
-/// Contacts are looked at after each step of the integrator, of which there are at least so many: a contact force
-/// that is negative for a shorter time than a step may go unseen.
-pub(super) const FEWEST_STEPS: f64 = 256.0;
-
 /// The end of a contact is sought until it is known to so many seconds.
 pub(super) const LOCATED: f64 = 1e-14;
 
@@ -45,7 +41,7 @@ pub fn simulate(scene: &MovingScene, times: &[f64]) -> Result<Trajectory, SceneE
     let start_energy = Moment::of(scene, now.time, &now.state).energy();
     for &time in times {
         if time > now.time {
-            match advance(scene, now, [time, last / FEWEST_STEPS], &budget) {
+            match advance(scene, now, [time, scene.longest_step(last)], &budget) {
                 Ok(held) => now = TimedState { time, ..held },
                 Err(stop) => {
                     // an end at once after a sample is that sample

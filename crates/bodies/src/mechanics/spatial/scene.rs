@@ -3,7 +3,8 @@
 use super::orientation::Orientation;
 use super::solid::ConvexSolid;
 use crate::mechanics::moving::{Course, PushedPalm};
-use nalgebra::Matrix3;
+use crate::mechanics::pace::longest_step;
+use nalgebra::{Matrix3, Vector3};
 
 /// A palm that turns about a horizontal hinge, and rises from there in a direction that stays: a plane, or a sphere that is fixed to
 /// it and touches that plane at a point.
@@ -100,6 +101,14 @@ pub enum SpatialSceneError {
 }
 
 impl SpatialScene {
+    /// The longest step of the integrator, in s, in a motion that goes on until `last`.
+    pub(super) fn longest_step(&self, last: f64) -> f64 {
+        let length = |all: [f64; 3]| Vector3::from(all).norm();
+        // the trace is twice the mean square of the distance from the centre
+        let size = (self.inertia_over_mass.trace() / 2.0).sqrt();
+        longest_step(last, size, length(self.rate), length(self.gravity))
+    }
+
     /// Each palm's angle, rate and acceleration at a time; those of palms that are pushed as they are integrated, without the
     /// acceleration.
     pub(super) fn palms_at(&self, time: f64, pushed: &[[f64; 2]; 3]) -> [[f64; 3]; 3] {

@@ -125,10 +125,6 @@ impl SpatialTrajectory {
     }
 }
 
-/// Contacts are looked at after each step of the integrator, of which there are at least so many: a contact force that is
-/// negative for a shorter time than a step may go unseen.
-const FEWEST_STEPS: f64 = 256.0;
-
 /// What a motion may cost: steps of the integrator.
 const ALLOWANCE: Allowance = Allowance { bytes: u64::MAX, nodes: u64::MAX, steps: 50_000 };
 
@@ -165,7 +161,7 @@ pub fn simulate_solid(scene: &SpatialScene, times: &[f64]) -> Result<SpatialTraj
     let start_energy = SpatialMoment::of(scene, &now).energy();
     for &time in times {
         if time > now.time {
-            match advance(scene, now, time, last / FEWEST_STEPS, &budget) {
+            match advance(scene, now, time, scene.longest_step(*last), &budget) {
                 Ok(held) => now = TimedState { time, ..held },
                 Err(end) => {
                     let (at, ended) = *end;

@@ -6,7 +6,7 @@ use super::modes::{ContactMode, ModePair};
 use crate::mechanics::moving::integrate::own_steps;
 use crate::mechanics::moving::laws::State;
 use crate::mechanics::moving::scene::{MovingScene, SceneError};
-use crate::mechanics::moving::simulate::{FEWEST_STEPS, LOCATED, checked_times};
+use crate::mechanics::moving::simulate::{LOCATED, checked_times};
 use crate::mechanics::moving::trajectory::{Ended, Moment, Trajectory};
 use crate::mechanics::palm::Palm;
 use std::cell::Cell;
@@ -189,7 +189,7 @@ pub fn simulate_with_friction(
     let mut now = Rubbed { time: 0.0, state: scene.start(), dissipated: 0.0 };
     let sliding = ModePair([ContactMode::Along; 2]);
     let mut motion =
-        Motion { scene, coefficient, pair: sliding, longest: last / FEWEST_STEPS, spent: Cell::new(0) };
+        Motion { scene, coefficient, pair: sliding, longest: scene.longest_step(last), spent: Cell::new(0) };
     if let Some(breach) = motion.at(&now).situation.breach(scene).filter(|_| coefficient == 0.0) {
         return Err(SceneError::Start(breach));
     }

@@ -210,6 +210,32 @@ fn what_is_stuck_turns_with_the_palms() {
     assert!(edge(stuck[stuck.len() - 1]) < 0.01 && edge(stuck[stuck.len() / 2]) > 0.01);
 }
 
+/// The changes of modes, and the end, are those of the motion, however long it is asked to go on.
+#[test]
+fn how_long_a_motion_may_go_on_changes_nothing() {
+    let changes = |scene: &MovingScene, until: f64| {
+        let times = [0.9, until];
+        let motion = simulate_with_friction(scene, 0.1, &times).unwrap();
+        let early = motion.modes.into_iter().filter(|(time, _)| *time < 1.0);
+        (early.collect::<Vec<_>>(), motion.trajectory.moments[0].phi0)
+    };
+    for scene in [driven(), apart()] {
+        let (modes, phi0) = changes(&scene, 1.0);
+        assert!(modes.len() >= 4, "{modes:?}");
+        for until in [1e2, 1e6] {
+            let (others, other) = changes(&scene, until);
+            assert!((phi0 - other).abs() < 1e-9, "{until}: {phi0} {other}");
+            assert_eq!(modes.len(), others.len(), "{until}: {modes:?} {others:?}");
+            for ((time, pair), (other_time, other_pair)) in modes.iter().zip(&others) {
+                assert!(
+                    pair == other_pair && (time - other_time).abs() < 1e-7,
+                    "{until}: {time} {other_time}"
+                );
+            }
+        }
+    }
+}
+
 /// Where no modes are consistent it is said in words, at the start and on the way; and what cannot be used is refused.
 #[test]
 fn no_modes_are_told() {
