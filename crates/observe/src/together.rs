@@ -122,6 +122,11 @@ pub struct Innovations {
     pub whiteness: Option<f64>,
     /// Whether both are no less likely than [`FALSE_ALARMS`].
     pub fits: bool,
+    /// The sum of the products of each innovation with the one before, in deviations, and how many there are.
+    products: f64,
+    counted: usize,
+    /// What rounding may add to each, in deviations.
+    coherent: f64,
 }
 
 /// A sum of fewer products is not yet near a normal distribution.
@@ -145,7 +150,25 @@ impl Innovations {
             if rest <= 0.0 { 1.0 } else { exceeded(rest * rest / n, 1.0) }
         });
         let fits = probability >= FALSE_ALARMS && whiteness.is_none_or(|p| p >= FALSE_ALARMS);
-        (degrees > 0).then_some(Innovations { chi_square, degrees, probability, sigma, whiteness, fits })
+        (degrees > 0).then_some(Innovations {
+            chi_square,
+            degrees,
+            probability,
+            sigma,
+            whiteness,
+            fits,
+            products,
+            counted,
+            coherent,
+        })
+    }
+
+    /// Of these and those that came after, together.
+    pub fn with(self, later: Innovations) -> Innovations {
+        let sums = [self.chi_square + later.chi_square, self.products + later.products];
+        let counts = [self.degrees + later.degrees, self.counted + later.counted];
+        let (sigma, coherent) = (self.sigma.min(later.sigma), self.coherent.max(later.coherent));
+        Innovations::of(sums, counts, sigma, coherent).unwrap_or(self)
     }
 }
 
@@ -228,5 +251,10 @@ mod tests {
         assert!(!of(f64::NAN, 100).unwrap().fits);
         assert_eq!(of(40.0, 49).unwrap().whiteness, None);
         assert_eq!(Innovations::of([0.0, 0.0], [0, 0], 1.0, 0.0), None);
+        // two halves, each of which passes: by hand, products of 40 in 100 are four deviations
+        let half = of(20.0, 50).unwrap();
+        let whole = half.with(half);
+        assert!(half.fits && !whole.fits && whole.degrees == 200);
+        assert!((whole.whiteness.unwrap() / 6.334e-5 - 1.0).abs() < 1e-3, "{whole:?}");
     }
 }

@@ -4,7 +4,7 @@
 //! The images are those of [`palmistry_rank::observability::mirrors`], exact and of the class that is described there; those outside of the stated bounds are no others.
 
 use super::run::Experiment;
-use palmistry_observe::{Track, Update};
+use palmistry_observe::Track;
 use palmistry_rank::observability::{Image, mirrors};
 use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
@@ -18,13 +18,20 @@ const APART: f64 = 6.0;
 impl Experiment {
     /// Adds the mirror images of what was found to what is said of it.
     pub(super) fn name_mirrors(&self, track: &mut Track) {
-        let Some(update) = track.updates.iter().find(|update| update.is_borne_out()) else { return };
-        let images = self.images(update);
+        let images = match track.updates.iter().find(|update| update.is_borne_out()) {
+            Some(update) => self.images(update.from, &update.estimate, &update.deviations),
+            // of a filter, which has no windows, what it believes at the end
+            None if track.updates.is_empty() && track.passes() => {
+                let last = track.last().filter(|last| last.deviations.len() == last.state.len());
+                last.map_or_else(Vec::new, |last| self.images(last.time, &last.state, &last.deviations))
+            }
+            None => return,
+        };
         track.remarks.extend(images);
     }
 
-    /// Each image in words.
-    fn images(&self, update: &Update) -> Vec<String> {
+    /// Each image of a state with its deviations, in words.
+    fn images(&self, time: f64, state: &[f64], deviations: &[f64]) -> Vec<String> {
         let names = self.names();
         let free: HashSet<_> = names.iter().filter_map(|name| self.system.find_symbol(name)).collect();
         let mut system = self.system.clone();
@@ -40,7 +47,7 @@ impl Experiment {
             for (symbol, turned) in &mirror.of {
                 let name = system.symbol_name(*symbol);
                 let place = names.iter().position(|own| *own == name)?;
-                let value = update.estimate[place];
+                let value = state[place];
                 let turned = match turned {
                     Image::Negative => -value,
                     Image::HalfTurn => value + PI,
@@ -48,7 +55,7 @@ impl Experiment {
                 };
                 let is_angle = system.is_angle(*symbol);
                 let near = if is_angle { turned - ((turned - value) / TAU).round() * TAU } else { turned };
-                is_other |= (near - value).abs() > APART * update.deviations[place];
+                is_other |= (near - value).abs() > APART * deviations[place];
                 // an angle is named between minus and plus a half turn, unless its bounds are elsewhere
                 let first = (turned + PI).rem_euclid(TAU) - PI;
                 let ways = if is_angle { vec![first, first - TAU, first + TAU] } else { vec![turned] };
@@ -64,8 +71,7 @@ impl Experiment {
             };
             is_other.then(|| {
                 format!(
-                    "at {:.3} s {} explains the same measurements, by a symmetry of the equations: {exclude}",
-                    update.from,
+                    "at {time:.3} s {} explains the same measurements, by a symmetry of the equations: {exclude}",
                     image.join(", ")
                 )
             })

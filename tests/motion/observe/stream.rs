@@ -366,3 +366,30 @@ fn blind_windows_grow() {
     let ends = told[..50].iter().map(|window| &window["observers"][1]["end"]["time"]);
     assert!(ends.clone().zip(1..).all(|(end, k)| (end.as_f64().unwrap() - 0.2 * f64::from(k)).abs() < 1e-9));
 }
+
+/// The innovations of a filter are those of the file, whatever the pieces; a model without what bends the motion fails by them at the end.
+#[test]
+fn a_filter_alone_is_tested_at_the_end() {
+    let (folder, scene, readings) = spring(&SCENE.replace("\"trust-region\", \"kalman\"", "\"kalman\""));
+    let header = readings.lines().next().unwrap();
+    let bent = readings.lines().skip(1).map(|row| {
+        let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+        format!("{:?},{:?}\n", cells[0], cells[1] + 0.004 * cells[0])
+    });
+    let bent = format!("{header}\n{}", bent.collect::<String>());
+    for (text, fits) in [(&readings, true), (&bent, false)] {
+        let file = write(&folder, "readings.csv", text);
+        let (output, whole) = observe(&scene, &["--data", file.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(i32::from(!fits)), "{whole}");
+        let (mut child, lines) = listening(&scene);
+        child.stdin.as_mut().unwrap().write_all(text.as_bytes()).unwrap();
+        let (left, status, words) = end_of(child, &lines);
+        assert_eq!(status, Some(i32::from(!fits)), "{words}");
+        let own = &left.last().unwrap()["observers"][0]["innovations"];
+        let other = &whole["observers"][0]["innovations"];
+        println!("{own}\n{other}");
+        assert_eq!(own["fits"], fits);
+        let ratio = own["chi_square"].as_f64().unwrap() / other["chi_square"].as_f64().unwrap();
+        assert!((ratio - 1.0).abs() < 0.05, "{own} {other}");
+    }
+}

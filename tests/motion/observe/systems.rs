@@ -77,6 +77,18 @@ fn a_mirror_image_is_named() {
     let observer = &found["observers"][0];
     assert_eq!(observer["fits_as_well"], Value::Array(Vec::new()));
     assert!((of(&observer["updates"][0], "x") - 0.7).abs() < 0.01);
+    // a filter, which has no windows, names the image of what it believes at the end
+    let filter = scene
+        .replace("methods = [\"multiple-shooting\"]", "methods = [\"kalman\"]\nguess_off = 0.05")
+        .replace("mirror.proof", "both.proof");
+    write(&folder, "both.proof", model);
+    let (output, found) = observe(&write(&folder, "filter.toml", filter), &[]);
+    assert_eq!(output.status.code(), Some(0), "{found}");
+    let remarks = found["observers"][0]["remarks"].to_string();
+    assert!(
+        remarks.contains("at 4.000 s x = ") && remarks.contains("explains the same measurements"),
+        "{remarks}"
+    );
 }
 
 /// What was recorded gives what was simulated, to the last digit, whatever the first guess; and no page speaks of palms.

@@ -186,7 +186,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
             "unseen_samples": answer.track.unseen,
             "remarks": answer.track.remarks,
             "together": together_json(answer.track.together()),
-            "innovations": innovations_json(&answer.track),
+            "innovations": innovations_json(answer.track.innovations),
             "updates": updates.collect::<Vec<_>>(),
             "fits_as_well": answer.track.others.iter().map(|other| update_json(observed, other)).collect::<Vec<_>>(),
             "end": end,

@@ -2,7 +2,7 @@
 
 use crate::motion::answers::{Beside, Observed, end_name, fault_lines, state_lines, states, update_json};
 use crate::motion::fit::{fit_in_words, suspects_in_words};
-use crate::motion::verdicts::{together_in_words, together_json};
+use crate::motion::verdicts::{innovations_in_words, innovations_json, together_in_words, together_json};
 use palmistry_scenes::{StreamAnswer, StreamEnd, WindowReport};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -46,6 +46,7 @@ pub fn stream_end_json(end: &StreamEnd, interrupted: bool) -> Value {
             "fit": tally.fit,
             "do_not_fit": tally.contradicted,
             "together": together_json(tally.tested.together()),
+            "innovations": innovations_json(tally.innovations),
         })
     };
     let mut found = json!({
@@ -121,6 +122,9 @@ pub fn stream_end_text(end: &StreamEnd) -> String {
     for tally in &end.observers {
         if let Some(all) = tally.tested.together().filter(|all| !all.fits) {
             let _ = write!(text, "\n{}: {}", tally.method.name(), together_in_words(&all));
+        }
+        if let Some(own) = &tally.innovations {
+            let _ = write!(text, "\n{}: {}", tally.method.name(), innovations_in_words(own));
         }
     }
     if let Some(why) = &end.cut_off {

@@ -67,8 +67,8 @@ pub(super) fn together_json(together: Option<Together>) -> Value {
 }
 
 /// The test of a filter's innovations as an object; null of other methods.
-pub(super) fn innovations_json(track: &Track) -> Value {
-    track.innovations.map_or(Value::Null, |own| {
+pub(super) fn innovations_json(innovations: Option<Innovations>) -> Value {
+    innovations.map_or(Value::Null, |own| {
         json!({
             "fits": own.fits,
             "chi_square": finite(own.chi_square),

@@ -5,7 +5,7 @@ use super::quadrature::SlowTrack;
 use palmistry_bodies::shape::ShapeEstimate;
 
 /// So many deviations of chi-square are not chance.
-const CERTAIN: f64 = 5.0;
+pub(super) const CERTAIN: f64 = 5.0;
 
 /// Shape and motion that explain all readings.
 #[derive(Clone, Debug)]

@@ -5,6 +5,7 @@
 //!
 //! Nothing here has seen the body: what a simulation knows comes in through readings alone.
 
+mod detours;
 mod families;
 mod found;
 mod keys;
@@ -16,7 +17,6 @@ mod outline;
 mod patches;
 mod quadrature;
 mod readings;
-mod returns;
 mod run;
 mod scene;
 mod segments;

@@ -1,5 +1,6 @@
 //! A scene of slow motion, simulated or recorded, and what every way makes of its readings.
 
+use super::detours::without_detours;
 use super::found::SlowShape;
 use super::keys::COLUMNS;
 use super::kinks::with_kinks;
@@ -8,7 +9,6 @@ use super::local::derivative;
 use super::patches::{Arrangement, arrangements};
 use super::quadrature::{SlowTrack, by_quadrature};
 use super::readings::SlowReadings;
-use super::returns::led_on;
 use super::scene::SlowScene;
 use super::segments::{FoundJump, found_jumps, from_segments};
 use super::start::{EXACT, Vote, from_nothing, from_nothing_briefly, votes};
@@ -144,7 +144,7 @@ impl SlowExperiment {
         let mut seconds = [f64::NAN; 3];
         let begin = Instant::now();
         let together = from_any(readings, interrupt)
-            .map(|found| led_on(readings, with_kinks(readings, found, interrupt)));
+            .map(|found| without_detours(readings, with_kinks(readings, found, interrupt), interrupt));
         timed(&mut seconds[0], begin);
         done("all readings at once");
         let explained = together.as_ref().is_some_and(|found| found.explains(EXACT));

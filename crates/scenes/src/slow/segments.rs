@@ -37,7 +37,7 @@ const BACK: usize = 8;
 
 /// Between two samples the palms move in so many steps; a turn by more in one of them may be a jump.
 const STEPS: usize = 24;
-const JUMP: f64 = 0.04;
+pub(super) const JUMP: f64 = 0.04;
 
 /// Such a step is halved so often: what remains of the turn is a jump.
 const HALVINGS: usize = 20;
@@ -47,7 +47,7 @@ const HALVINGS: usize = 20;
 pub struct FoundJump {
     /// The first sample after it.
     pub row: usize,
-    /// By how much the body turned, in radians.
+    /// By how much the body turned, in radians: as it descends where that is foretold, else by the shorter way round.
     pub turn: f64,
     /// Whether descent in the recovered potential leads there from the pose before.
     pub predicted: bool,
@@ -265,9 +265,12 @@ pub fn found_jumps(readings: &SlowReadings, found: &SlowShape) -> Vec<FoundJump>
                 None => followed = false,
             }
         }
-        let predicted = followed && ((pose - phi0[row] + PI).rem_euclid(TAU) - PI).abs() < JUMP;
+        let shorter = |turn: f64| (turn + PI).rem_euclid(TAU) - PI;
+        let predicted = followed && shorter(pose - phi0[row]).abs() < JUMP;
         if jumped || !predicted {
-            all.push(FoundJump { row, turn: phi0[row] - phi0[row - 1], predicted });
+            let before = phi0[row - 1];
+            let turn = if predicted { pose - before } else { shorter(phi0[row] - before) };
+            all.push(FoundJump { row, turn, predicted });
         }
     }
     all

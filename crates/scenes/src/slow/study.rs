@@ -1,5 +1,6 @@
 //! Many bodies: how often, how well and how fast each way finds a shape.
 
+use super::detours::without_detours;
 use super::families::Family;
 use super::kinks::with_kinks;
 use super::ladder::Orders;
@@ -254,7 +255,7 @@ fn one_body(
         from_nothing_within(&readings, Orders { least, most: row.order, enough: 0.0 }, interrupt)
     };
     let found = found.map(|found| match row.order {
-        None => with_kinks(&readings, found, interrupt),
+        None => without_detours(&readings, with_kinks(&readings, found, interrupt), interrupt),
         Some(_) => found,
     });
     let seconds = watch.seconds();

@@ -31,6 +31,8 @@ impl SoFar {
             fit: 0,
             contradicted: 0,
             tested: Tested::default(),
+            innovations: None,
+            believed: [0; 2],
         };
         SoFar {
             windows: 0,
@@ -188,6 +190,11 @@ impl<'a> Observing<'a> {
             tally.fit += track.updates.iter().filter(|update| update.is_borne_out()).count();
             track.updates.iter().for_each(|update| update.count_in(&mut tally.tested));
             tally.contradicted += track.updates.iter().filter(|update| update.is_contradicted()).count();
+            if let Some(own) = track.innovations {
+                tally.innovations = Some(tally.innovations.map_or(own, |before| before.with(own)));
+            }
+            tally.believed[0] += track.estimates.len();
+            tally.believed[1] += track.unseen;
             answers.push(StreamAnswer {
                 method: tally.method,
                 deviations: track.learned.as_ref().and_then(|learned| learned.deviations.clone()),

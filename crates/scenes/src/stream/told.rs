@@ -2,7 +2,7 @@
 
 use crate::run::Experiment;
 use crate::scene::Method;
-use palmistry_observe::{Fault, SampleEstimate, Tested, Update};
+use palmistry_observe::{Fault, Innovations, SampleEstimate, Tested, Update};
 
 /// What arrives.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,6 +83,10 @@ pub struct StreamTally {
     pub contradicted: usize,
     /// All of them together, and where they meet.
     pub tested: Tested,
+    /// The innovations of a filter, over all windows; none of other methods.
+    pub innovations: Option<Innovations>,
+    /// Samples at which it believed something, and those of them at which it could not follow its model.
+    pub believed: [usize; 2],
 }
 
 impl StreamTally {
@@ -90,15 +94,25 @@ impl StreamTally {
     pub fn is_contradicted(&self) -> bool {
         self.contradicted > 0 || self.tested.together().is_some_and(|all| !all.fits)
     }
+
+    /// Whether a method that does not work by windows has an answer, followed its model somewhere after its first sample, and passes the test of its innovations, where it has
+    /// any: as `Track::passes`.
+    pub fn passes(&self) -> bool {
+        let [believed, unseen] = self.believed;
+        believed > 0 && (unseen == 0 || unseen + 1 < believed) && self.innovations.is_none_or(|own| own.fits)
+    }
 }
 
 impl StreamEnd {
-    /// Whether no update is contradicted, and each method by windows has one that fits; of what was cut off before it had any none is asked for.
+    /// Whether no update is contradicted, and each method by windows has one that fits; where there is none by windows, whether each filter passes its test. Of what was
+    /// cut off before it had any answer none is asked for.
     pub fn is_sound(&self) -> bool {
         let is_whole = self.cut_off.is_none();
-        self.observers
-            .iter()
-            .filter(|tally| tally.method.is_by_windows())
-            .all(|tally| !tally.is_contradicted() && (tally.fit > 0 || (!is_whole && tally.updates == 0)))
+        let by_windows = |tally: &StreamTally| tally.method.is_by_windows();
+        let has_windows = self.observers.iter().any(by_windows);
+        self.observers.iter().all(|tally| match by_windows(tally) {
+            true => !tally.is_contradicted() && (tally.fit > 0 || (!is_whole && tally.updates == 0)),
+            false => has_windows || tally.passes() || (!is_whole && tally.believed[0] == 0),
+        })
     }
 }
