@@ -1,8 +1,11 @@
 //! Damaged files, for each of the readers: whatever stands in a file, the reader returns, and does not panic.
 //!
 //! The corpus in `tests/corpus`, a folder a reader, is replayed by every run; beside it come shipped files with bytes
-//! changed, cut out, doubled and lengths that lie. `PALMISTRY_FUZZ_CASES=100000` asks for a longer run. A case that
+//! changed, cut out, doubled and lengths that lie, and files that have grown: see [`growth`].
+//! `PALMISTRY_FUZZ_CASES=100000` asks for a longer run. A case that
 //! takes longer than [`HUNG`] is a hang: it is shown, and the test ends.
+
+mod growth;
 
 use palmistry::RankQuestion;
 use palmistry::certificate::{Limits, Region, RegionRows};
@@ -20,13 +23,16 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A case that takes longer hangs; none takes a hundredth of it.
 const HUNG: Duration = Duration::from_secs(60);
 
 /// Cases for each reader, unless the environment asks for another number.
 const CASES: u32 = 300;
+
+/// For so many of them one file grows.
+const GROWN: u32 = 50;
 
 fn cases() -> u32 {
     std::env::var("PALMISTRY_FUZZ_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(CASES)
@@ -103,6 +109,41 @@ impl Watched {
             })
             .unwrap();
         assert!(tried.get() >= cases(), "{} cases", tried.get());
+        self.try_grown(whole);
+    }
+
+    /// Reads copies that have grown.
+    fn try_grown(&self, whole: &[Vec<u8>]) {
+        let config =
+            Config { cases: cases().div_ceil(GROWN), failure_persistence: None, ..Config::default() };
+        TestRunner::new(config)
+            .run(&(prop::sample::select(whole.to_vec()), growth::growth()), |(file, growth)| {
+                let sizes = growth::SIZES.map(|size| growth.of(&file, size));
+                let seconds = |of: &Vec<u8>| {
+                    let begin = Instant::now();
+                    self.read(of);
+                    begin.elapsed().as_secs_f64()
+                };
+                let mut times = [0, 1, 2].map(|place: usize| seconds(&sizes[place]));
+                // what else runs here may have taken the time
+                for _ in 0..2 {
+                    if growth::are_squares(times) {
+                        times = [0, 1, 2].map(|place: usize| times[place].min(seconds(&sizes[place])));
+                    }
+                }
+                if growth::are_squares(times) {
+                    let kept = std::env::temp_dir().join(format!("{}-grown.case", self.name));
+                    let _ = std::fs::write(&kept, &sizes[2]);
+                    panic!(
+                        "the reader of {} takes {times:?} s for files of {:?} bytes, the last one {}",
+                        self.name,
+                        sizes.map(|own| own.len()),
+                        kept.display()
+                    );
+                }
+                Ok(())
+            })
+            .unwrap();
     }
 }
 
