@@ -421,7 +421,7 @@ impl System {
             Some(field) if moves && self.states.len() > MOST_COLUMNS => {
                 let count = self.states.len();
                 let message = format!(
-                    "a rank is found of at most {MOST_COLUMNS} states and unknown parameters, and these are {count}"
+                    "ranks and estimates are of at most {MOST_COLUMNS} states and unknown parameters, and these are {count}"
                 );
                 Problem::new(&field.span, message, "what moves them")
                     .help("leave out what is not asked for, or declare a parameter that is known as 'param'")

@@ -170,12 +170,6 @@ impl Track {
         !self.estimates.is_empty() && follows && self.innovations.is_none_or(|own| own.fits)
     }
 
-    /// The first of its updates whose search did not come to its end, or whose model could not be followed: what is believed there, and of an angle that is
-    /// integrated from there on, nothing bears out.
-    pub fn unanswered(&self) -> Option<&Update> {
-        self.updates.iter().find(|update| matches!(update.end, UpdateEnd::StepsSpent | UpdateEnd::Lost(_)))
-    }
-
     /// Whether one of its updates is borne out by the readings, none is contradicted and each search came to an end: of methods that work by windows. A window in which
     /// the model has a pole is no fault of either.
     pub fn is_sound(&self) -> bool {

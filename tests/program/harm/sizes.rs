@@ -121,12 +121,12 @@ fn many_sets_are_read_and_ranks_of_too_many_states_are_refused() {
     let parsed = |count, claim| System::parse("a.proof", &text(count, claim), Path::new(""));
     assert_eq!(parsed(10_000, "rank = 2").unwrap().claims.len(), 1);
     assert_eq!(parsed(10_001, "L(f, x0) = x1").unwrap().claims.len(), 1);
-    let words = "a rank is found of at most 10000 states and unknown parameters, and these are 10001";
+    let words = "ranks and estimates are of at most 10000 states and unknown parameters, and these are 10001";
     let error = parsed(10_001, "rank = 2").unwrap_err();
     assert_eq!(error.to_string(), format!("claim 1: {words}"));
 
     let folder = folder();
-    let path = write(&folder, "many.proof", &text(10_001, "L(f, x0) = x1"));
+    let path = write(&folder, "many.proof", text(10_001, "L(f, x0) = x1"));
     let said = refused(&["rank", path.to_str().unwrap()]);
-    assert!(said.contains("a rank is found of at most 10000"), "{said}");
+    assert!(said.contains("ranks and estimates are of at most"), "{said}");
 }

@@ -58,8 +58,7 @@ impl Experiment {
             Err(found) => apart = found,
         }
         let (shape, coverage) = from_track(&track, !answer.track.updates.is_empty());
-        // the orientation of all windows after it hangs on one that has no answer
-        let shape = shape.filter(|_| answer.track.unanswered().is_none());
+        let shape = shape.filter(|_| track::hole(answer, self.scene.observer.when_blind).is_none());
         Some(Reconstruction { track, shape, coverage, whole: None, contradiction, apart })
     }
 
@@ -85,11 +84,9 @@ impl Experiment {
                     answer.track.updates[place].seam = Some(seam);
                     answer.track.remarks.push(why);
                 }
-                if let Some(update) = answer.track.unanswered().filter(|_| found.whole.is_none()) {
-                    let why = format!(
-                        "no outline is told by windows: from {:.3} s there is no answer",
-                        update.from
-                    );
+                let hole = track::hole(answer, self.scene.observer.when_blind);
+                if let Some(from) = hole.filter(|_| found.whole.is_none()) {
+                    let why = format!("no outline is told by windows: from {from:.3} s there is no answer");
                     answer.track.remarks.push(why);
                 }
                 answer.reconstruction = Some(Box::new(found));

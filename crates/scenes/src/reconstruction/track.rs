@@ -7,7 +7,7 @@ use super::super::run::{Answer, Experiment};
 use palmistry_bodies::mechanics::Palm;
 use palmistry_bodies::shape::SupportSample;
 use palmistry_math::number::rational_to_f64;
-use palmistry_observe::{Signals, Update, UpdateEnd};
+use palmistry_observe::{Signals, Update, UpdateEnd, WhenBlind};
 use std::f64::consts::FRAC_PI_2;
 
 /// The answer whose outline is shown: of the first method by windows that saw anything, else of the first by windows, else of the first.
@@ -20,6 +20,27 @@ pub fn shown(answers: &[Answer]) -> Option<&Answer> {
 
 fn sees(update: &Update) -> bool {
     !matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_))
+}
+
+/// From when on, in s, windows tell no outline: where a search did not come to its end, or where between windows that see there is one that does not, and nothing else answers
+/// there. The orientation of all later ones hangs on it. A window that is blind and goes on by its equations is none.
+pub(super) fn hole(answer: &Answer, when_blind: WhenBlind) -> Option<f64> {
+    let updates = &answer.track.updates;
+    let is_answered = |update: &Update| sees(update) && update.end != UpdateEnd::StepsSpent;
+    let ends = (updates.iter().position(is_answered), updates.iter().rposition(is_answered));
+    let (Some(first), Some(last)) = ends else { return updates.first().map(|update| update.from) };
+    let is_hole = |(place, update): &(usize, &Update)| {
+        let covers =
+            |other: &Update| is_answered(other) && other.from <= update.from && update.to <= other.to;
+        let is_unanswered = match update.end {
+            UpdateEnd::StepsSpent => true,
+            UpdateEnd::Lost(_) => (first..last).contains(place),
+            UpdateEnd::Blind { .. } => when_blind == WhenBlind::Hold && (first..last).contains(place),
+            _ => false,
+        };
+        is_unanswered && !updates.iter().any(covers)
+    };
+    updates.iter().enumerate().find(is_hole).map(|(_, update)| update.from)
 }
 
 /// The value of a state or constant at a sample, from the readings or from what is told.
@@ -258,6 +279,44 @@ pub fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use palmistry_observe::Lost;
+
+    /// Of windows that all see, one after the other is given another end: what lies between others is a hole, what lies at an end is none, and a search without an end is one anywhere.
+    #[test]
+    fn a_hole_is_what_later_orientations_hang_on() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../proofs/moll2002/scenes/same_rate.toml");
+        let text = std::fs::read_to_string(path).unwrap();
+        let mut scene = crate::Scene::parse(path, &text).unwrap_or_else(|error| panic!("{error:?}"));
+        scene.observer.methods = vec![crate::Method::TrustRegion];
+        let experiment = Experiment::new(scene, None).unwrap_or_else(|error| panic!("{error:?}"));
+        let answer = experiment.observe().unwrap_or_else(|error| panic!("{error:?}")).remove(0);
+        let last = answer.track.updates.len() - 1;
+        assert!(last >= 3);
+        let hole_with = |place: usize, end: UpdateEnd, when_blind| {
+            let mut other = answer.clone();
+            other.track.updates[place].end = end;
+            hole(&other, when_blind)
+                .map(|from| answer.track.updates.iter().position(|own| own.from == from).unwrap())
+        };
+        assert_eq!(hole(&answer, WhenBlind::Hold), None);
+        let lost = || UpdateEnd::Lost(Lost { time: 0.0, why: String::new() });
+        let blind = || UpdateEnd::Blind { weakest: Vec::new() };
+        for place in 0..=last {
+            let between = (0 < place && place < last).then_some(place);
+            assert_eq!(hole_with(place, UpdateEnd::StepsSpent, WhenBlind::Integrate), Some(place));
+            assert_eq!(hole_with(place, lost(), WhenBlind::Integrate), between);
+            assert_eq!(hole_with(place, blind(), WhenBlind::Hold), between);
+            assert_eq!(hole_with(place, blind(), WhenBlind::Integrate), None);
+        }
+        let mut none = answer.clone();
+        none.track.updates.iter_mut().for_each(|own| own.end = blind());
+        assert_eq!(hole(&none, WhenBlind::Integrate), Some(0.0));
+        // what has grown over it answers there
+        let mut covered = answer.clone();
+        covered.track.updates[1].end = blind();
+        covered.track.updates[2].from = answer.track.updates[1].from;
+        assert_eq!(hole(&covered, WhenBlind::Hold), None);
+    }
 
     /// The integral of a cosine is the sine; a polynomial of the seventh degree has no error but rounding's.
     #[test]

@@ -9,13 +9,13 @@ use crate::mechanics::moving::scene::{MovingScene, SceneError};
 use crate::mechanics::moving::simulate::{LOCATED, checked_times};
 use crate::mechanics::moving::trajectory::{Ended, Moment, Trajectory};
 use crate::mechanics::palm::Palm;
-use std::cell::Cell;
+use palmistry_io::foreign::{Allowance, Budget};
 
 /// After so many changes of mode a motion is given up.
 const MOST_CHANGES: usize = 10_000;
 
-/// After so many steps of the integrator, those that look for a change of mode included, a motion is given up: a minute of sliding takes thousands.
-const MOST_STEPS: usize = 300_000;
+/// What a motion may cost: steps of the integrator, those that look for a change of mode included. A minute of sliding takes thousands.
+const ALLOWANCE: Allowance = Allowance { bytes: u64::MAX, nodes: u64::MAX, steps: 300_000 };
 
 /// By how much a sliding contact may slide the other way, in m/s, and what sticks leave its cone, in parts of the forces, before it is
 /// seen: ten times what the integration leaves.
@@ -66,8 +66,7 @@ struct Motion<'a> {
     coefficient: f64,
     pair: ModePair,
     longest: f64,
-    /// Steps of the integrator so far.
-    spent: Cell<usize>,
+    budget: Budget,
 }
 
 impl Motion<'_> {
@@ -86,9 +85,8 @@ impl Motion<'_> {
     }
 
     fn steps(&self, from: Rubbed, end: f64) -> (Vec<Rubbed>, Option<String>) {
-        if self.spent.get() > MOST_STEPS {
-            let why = format!("it takes more than {MOST_STEPS} steps: is its duration in seconds?");
-            return (vec![from], Some(why));
+        if let Err(spent) = self.budget.steps(0) {
+            return (vec![from], Some(format!("{spent} of the integrator: is its duration in seconds?")));
         }
         let rates = |y: &Vector| {
             let now = Rubbed::of(from.time + y[8], y);
@@ -103,7 +101,8 @@ impl Motion<'_> {
         });
         let longest = self.longest.min(end - from.time);
         let (all, failure) = own_steps(rates, start, [from.time, end], longest, self.scene.tolerance);
-        self.spent.set(self.spent.get() + all.len());
+        // what is too much ends the next integration before it begins
+        let _ = self.budget.steps(all.len());
         (all.iter().map(|(time, y)| Rubbed::of(*time, y)).collect(), failure)
     }
 
@@ -188,8 +187,13 @@ pub fn simulate_with_friction(
     }
     let mut now = Rubbed { time: 0.0, state: scene.start(), dissipated: 0.0 };
     let sliding = ModePair([ContactMode::Along; 2]);
-    let mut motion =
-        Motion { scene, coefficient, pair: sliding, longest: scene.longest_step(last), spent: Cell::new(0) };
+    let mut motion = Motion {
+        scene,
+        coefficient,
+        pair: sliding,
+        longest: scene.longest_step(last),
+        budget: Budget::new(ALLOWANCE),
+    };
     if let Some(breach) = motion.at(&now).situation.breach(scene).filter(|_| coefficient == 0.0) {
         return Err(SceneError::Start(breach));
     }
