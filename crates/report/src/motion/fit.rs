@@ -53,9 +53,10 @@ pub(super) fn unexplained(update: &Update, fit: &Fit) -> String {
         NoiseFrom::Stated if fit.has_outliers() => {
             format!("{} readings are beyond what normal errors reach, more than a tenth", fit.outliers)
         }
-        NoiseFrom::Stated if let (Some(_), Some(output)) = (fit.by_drift(), &update.drifting) => format!(
-            "a misfit of {misfit:.1e} for a noise of {:.1e}, and the residuals drift, those of {output} most: {}",
+        NoiseFrom::Stated if fit.by_drift().is_some() => format!(
+            "a misfit of {misfit:.1e} for a noise of {:.1e}, and the residuals drift, those of {} most: {}",
             fit.sigma,
+            update.drifting.as_deref().unwrap_or("an output"),
             p_in_words(probability)
         ),
         NoiseFrom::Stated if fit.is_by_neighbours() => format!(
