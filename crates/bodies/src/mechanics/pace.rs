@@ -4,8 +4,8 @@
 /// that is negative for a shorter time than a step may go unseen.
 const FEWEST_STEPS: f64 = 256.0;
 
-/// And there are at least so many in the time in which a body turns by one radian, or in which gravity moves it by its own size: what is seen of a motion does not
-/// hang on how long it is asked to go on.
+/// And there are at least so many in the time in which a body turns by one radian, or in which gravity moves it by its own size, however long the
+/// motion is asked to go on.
 const STEPS_A_TIME: f64 = 16.0;
 
 /// The longest step, in s, of a motion that goes on until `last`, of a body of a size in m that turns at a rate in rad/s.

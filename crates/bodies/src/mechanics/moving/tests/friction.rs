@@ -210,9 +210,9 @@ fn what_is_stuck_turns_with_the_palms() {
     assert!(edge(stuck[stuck.len() - 1]) < 0.01 && edge(stuck[stuck.len() / 2]) > 0.01);
 }
 
-/// The changes of modes, and the end, are those of the motion, however long it is asked to go on.
+/// The changes of modes in the first second are the same, however long the motion is asked to go on.
 #[test]
-fn how_long_a_motion_may_go_on_changes_nothing() {
+fn how_long_a_motion_may_go_on_does_not_change_its_beginning() {
     let changes = |scene: &MovingScene, until: f64| {
         let times = [0.9, until];
         let motion = simulate_with_friction(scene, 0.1, &times).unwrap();
