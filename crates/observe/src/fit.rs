@@ -75,6 +75,8 @@ pub struct Fit {
     pub outliers: usize,
     /// Readings, these among them.
     pub readings: usize,
+    /// The part of their size in the probability, by the sum of the squares; none where the noise was not stated.
+    pub squares: Option<f64>,
     /// The part of neighbours in the probability; none where they were not tested by themselves.
     pub neighbours: Option<f64>,
     /// The part of slow curves in the probability; none where the noise was not stated, or samples are few.
@@ -95,16 +97,21 @@ impl Fit {
 
     /// Whether it is the neighbours that agree too much, more than that the residuals are large or drift.
     pub fn is_by_neighbours(&self) -> bool {
-        self.by_drift().is_none() && self.neighbours.is_some_and(|own| own <= self.probability)
+        let drift = self.drift.map(|own| own.probability);
+        self.neighbours.is_some_and(|own| is_least(own, self.squares) && is_least(own, drift))
     }
 
     /// The drift of the residuals, where that is less likely than their size and their neighbours.
     pub fn by_drift(&self) -> Option<Drift> {
-        let is_least = |own: &Drift| {
-            own.probability <= self.probability && self.neighbours.is_none_or(|other| own.probability < other)
-        };
-        self.drift.filter(is_least)
+        self.drift.filter(|own| {
+            is_least(own.probability, self.squares) && is_least(own.probability, self.neighbours)
+        })
     }
+}
+
+/// Whether a probability is less than another, if there is one.
+fn is_least(own: f64, other: Option<f64>) -> bool {
+    other.is_none_or(|other| own < other)
 }
 
 /// What is compared: differences sample by sample, `outputs` of them each, after `unknowns` were fitted.
@@ -198,6 +205,7 @@ impl Misfit<'_> {
             probability,
             outliers,
             readings,
+            squares: Some(large),
             neighbours: alike,
             drift,
             sigma,
@@ -239,6 +247,7 @@ impl Misfit<'_> {
             probability,
             outliers: 0,
             readings,
+            squares: None,
             neighbours: None,
             drift: None,
             sigma,
@@ -371,6 +380,44 @@ mod tests {
             let fits = |unknowns| Misfit { unknowns, ..misfit(&differences, 1e-4) }.fit(noise).fits;
             assert!(fits(159) && !fits(160) && !fits(161), "{noise:?}");
         }
+    }
+
+    /// By hand: of three independent probabilities the least is at most 0.1 with probability 1 - 0.9^3 = 0.271; what is no number is the least of all, and
+    /// of none there is nothing to be surprised at.
+    #[test]
+    fn the_least_of_some_probabilities() {
+        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-15, "{a} {b}");
+        close(least_of([Some(0.1), Some(0.7), Some(1.0)]), 0.271);
+        close(least_of([Some(0.1), None, Some(1.0)]), 0.19);
+        close(least_of([None, Some(0.1)]), 0.1);
+        close(least_of([Some(0.5), Some(f64::NAN)]), 0.0);
+        close(least_of([None, None]), 0.0);
+        // where 1 - (1 - p)^2 would round to nothing
+        assert_eq!(least_of([Some(1e-30), Some(1.0)]), 2e-30);
+    }
+
+    /// What is named is the least of the three, however close all of them are to nothing.
+    #[test]
+    fn the_cause_of_a_misfit_is_its_least_probability() {
+        let fit = Fit {
+            chi_square: 0.0,
+            degrees: 100,
+            probability: 0.0,
+            outliers: 0,
+            readings: 100,
+            squares: Some(1.0e-200),
+            neighbours: Some(1.5e-200),
+            drift: None,
+            sigma: 1.0,
+            from: NoiseFrom::Stated,
+            fits: false,
+        };
+        let drift = |probability: f64| Fit { drift: Some(Drift { probability, output: 0 }), ..fit };
+        assert!(!fit.is_by_neighbours() && fit.by_drift().is_none());
+        assert!(!drift(1.2e-200).is_by_neighbours() && drift(1.2e-200).by_drift().is_none());
+        assert!(drift(0.9e-200).by_drift().is_some());
+        let alike = Fit { neighbours: Some(0.9e-200), ..fit };
+        assert!(alike.is_by_neighbours() && alike.by_drift().is_none());
     }
 
     /// A contact that rests is rounded by the same amount at each sample: that is no error of the model, and more than half a

@@ -95,6 +95,6 @@ pub use signal::{SignalError, Signals};
 pub use suspect::{Suspect, SuspectKind};
 pub use task::{EstimateQuestion, Observer, Task};
 pub use together::{Innovations, Seam, Tested, Together};
-pub use track::{SampleEstimate, Track, Update, UpdateEnd};
+pub use track::{SampleEstimate, Track, Update, UpdateEnd, passes_unwindowed};
 pub use trust_region::TrustRegion;
 pub use unscented::Unscented;

@@ -70,7 +70,11 @@ impl fmt::Display for Objection {
         match self {
             Objection::Pole(PoleMet { divisor, time }) => write!(f, "a pole, {divisor} = 0 at {time:.4} s"),
             Objection::Short { rank, of, at, order } => {
-                write!(f, "rank {rank} of {of} at {at:.4} s, of the outputs and {order} derivatives of each")
+                write!(f, "rank {rank} of {of} at {at:.4} s, from the outputs")?;
+                if *order > 0 {
+                    write!(f, " and their derivatives up to order {order}")?;
+                }
+                Ok(())
             }
             Objection::Condition { condition, at } => write!(f, "condition {condition:.1e} at {at:.4} s"),
             Objection::Lost(why) => write!(f, "its equations cannot be followed: {why}"),

@@ -163,11 +163,9 @@ impl Track {
         self.updates.iter().any(Update::is_contradicted) || self.together().is_some_and(|all| !all.fits)
     }
 
-    /// Whether a method that does not work by windows has an answer, did not lose its model at all samples after the first, and its innovations, where it has any,
-    /// are what it believes of its errors.
+    /// Whether a method that does not work by windows passes; see [`passes_unwindowed`].
     pub fn passes(&self) -> bool {
-        let follows = self.unseen == 0 || self.unseen + 1 < self.estimates.len();
-        !self.estimates.is_empty() && follows && self.innovations.is_none_or(|own| own.fits)
+        passes_unwindowed(self.estimates.len(), self.unseen, self.innovations.as_ref())
     }
 
     /// Whether one of its updates is borne out by the readings, none is contradicted and each search came to an end: of methods that work by windows. A window in which
@@ -177,4 +175,11 @@ impl Track {
         let has_ended = self.updates.iter().all(|update| update.end != UpdateEnd::StepsSpent);
         borne_out && has_ended && !self.is_contradicted()
     }
+}
+
+/// Whether a method that does not work by windows passes: it has estimates, it could follow its model at some sample after the first, and its
+/// innovations, where it has any, are what it believes of its errors.
+pub fn passes_unwindowed(estimates: usize, unseen: usize, innovations: Option<&Innovations>) -> bool {
+    let follows = unseen == 0 || unseen + 1 < estimates;
+    estimates > 0 && follows && innovations.is_none_or(|own| own.fits)
 }

@@ -193,6 +193,7 @@ impl Weights {
             probability,
             outliers: out,
             readings,
+            squares: Some(large),
             neighbours: None,
             drift,
             sigma,

@@ -95,6 +95,7 @@ mod tests {
             probability: 0.5,
             outliers: 0,
             readings: 100,
+            squares: None,
             neighbours: None,
             drift: None,
             sigma: 1.0,

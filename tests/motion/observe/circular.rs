@@ -44,6 +44,21 @@ fn a_body_between_arcs_is_recovered_and_flat_palms_do_not_explain_it() {
     assert!(missed > 0.05, "{missed:e}");
 }
 
+/// Windows whose searches do not come to an end carry no outline: there is none, and the answer says why.
+#[test]
+fn what_was_not_found_carries_no_outline() {
+    let folder = folder();
+    let spent = write(&folder, "scene.toml", with(&scene(), "steps = 20", "steps = 1"));
+    let (output, found) = observe(&spent, &[]);
+    assert_eq!(output.status.code(), Some(1), "{found}");
+    let remarks = found["observers"][0]["remarks"].to_string();
+    assert!(
+        remarks.contains("no outline") && remarks.contains("from 0.000 s there is no answer"),
+        "{remarks}"
+    );
+    assert!(found["shape"]["mean_radius"].is_null(), "{}", found["shape"]);
+}
+
 /// One palm flat, the other bulging; arc length is read along either.
 #[test]
 fn mixed_palms_are_recovered_too() {

@@ -227,6 +227,28 @@ fn all_faults_of_a_file_are_listed_together() {
     assert!(faults.iter().zip(rows).all(|(fault, row)| fault.starts_with(row)), "{faults:?}");
 }
 
+/// Of a million rows of one time not all faults are kept: it is said so, and no row is skipped for it.
+#[test]
+fn more_faults_than_are_kept_are_refused() {
+    let folder = folder();
+    let scene = scene(&folder, "skip");
+    let (path, _) = record(&folder, &scene, "x.csv");
+    let whole = std::fs::read_to_string(path).unwrap();
+    let mut lines = whole.lines();
+    let (header, row) = (lines.next().unwrap(), lines.next().unwrap());
+    let many = |count: usize| format!("{header}\n{}", format!("{row}\n").repeat(count));
+    let data = write(&folder, "many.csv", many(1_000_002));
+    let (output, found) = replayed(&scene, &data);
+    let (message, help) = refusal(&output, &found);
+    assert!(message.contains("has more than 1000000 faults") && message.ends_with("and more"), "{message}");
+    assert!(help.contains("no row is skipped"), "{help}");
+    // one less, and all but the first are skipped: nothing is estimated from one sample
+    let data = write(&folder, "many.csv", many(1_000_001));
+    let (output, found) = replayed(&scene, &data);
+    assert_eq!(output.status.code(), Some(1), "{found}");
+    assert_eq!((&found["samples"], found["faults"].as_array().map(Vec::len)), (&1.into(), Some(1_000_000)));
+}
+
 /// What cannot be read at all is refused whatever is to be done with faulty rows.
 #[test]
 fn files_that_are_no_recording_are_refused() {

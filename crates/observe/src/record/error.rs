@@ -75,11 +75,11 @@ pub enum RecordError {
     },
     /// The file has faulty rows, and the rules say to stop.
     #[error("{}", faulty(path, faults))]
-    #[diagnostic(help("mend the rows, or let faulty rows be skipped (on_fault = \"skip\" in the scene)"))]
+    #[diagnostic(help("{}", what_to_do(faults)))]
     Faulty {
         /// The file.
         path: PathBuf,
-        /// All the faults.
+        /// All the faults; where there are too many, as many as are looked for.
         faults: Vec<Fault>,
     },
     /// Nothing is left when the faulty rows are skipped.
@@ -114,6 +114,13 @@ pub enum RecordError {
     },
 }
 
+fn what_to_do(faults: &[Fault]) -> &'static str {
+    match faults.len() > MOST_FAULTS {
+        true => "mend the file: of so many faults not all are known, so that no row is skipped",
+        false => "mend the rows, or let faulty rows be skipped (on_fault = \"skip\" in the scene)",
+    }
+}
+
 fn faulty(path: &std::path::Path, faults: &[Fault]) -> String {
     let count = match faults.len() {
         1 => "one fault".to_owned(),
@@ -125,7 +132,9 @@ fn faulty(path: &std::path::Path, faults: &[Fault]) -> String {
 
 fn listed(faults: &[Fault]) -> String {
     let mut lines: Vec<String> = faults.iter().take(LISTED).map(Fault::to_string).collect();
-    if faults.len() > LISTED {
+    if faults.len() > MOST_FAULTS {
+        lines.push("and more".to_owned());
+    } else if faults.len() > LISTED {
         lines.push(format!("and {} more", faults.len() - LISTED));
     }
     lines.join("\n")

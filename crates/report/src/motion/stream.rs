@@ -45,6 +45,7 @@ pub fn stream_end_json(end: &StreamEnd, interrupted: bool) -> Value {
             "updates": tally.updates,
             "fit": tally.fit,
             "do_not_fit": tally.contradicted,
+            "steps_spent": tally.spent,
             "together": together_json(tally.tested.together()),
             "innovations": innovations_json(tally.innovations),
         })
@@ -118,6 +119,9 @@ pub fn stream_end_text(end: &StreamEnd) -> String {
     let mut text = format!("{} windows of {} rows; faulty rows: {}", end.windows, end.rows, end.faults);
     for tally in end.observers.iter().filter(|tally| tally.updates > 0) {
         let _ = write!(text, "; {}: {} of {} updates fit", tally.method.name(), tally.fit, tally.updates);
+        if tally.spent > 0 {
+            let _ = write!(text, ", {} ended with all steps spent", tally.spent);
+        }
     }
     for tally in &end.observers {
         if let Some(all) = tally.tested.together().filter(|all| !all.fits) {

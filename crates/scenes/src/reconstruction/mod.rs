@@ -86,7 +86,9 @@ impl Experiment {
                 }
                 let hole = track::hole(answer, self.scene.observer.when_blind);
                 if let Some(from) = hole.filter(|_| found.whole.is_none()) {
-                    let why = format!("no outline is told by windows: from {from:.3} s there is no answer");
+                    let why = format!(
+                        "no outline is estimated from the windows: from {from:.3} s there is no answer"
+                    );
                     answer.track.remarks.push(why);
                 }
                 answer.reconstruction = Some(Box::new(found));

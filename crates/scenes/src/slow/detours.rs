@@ -16,6 +16,9 @@ use std::f64::consts::{PI, TAU};
 /// So many stretches are led on at most, one after the other.
 const MOST: usize = 20;
 
+/// So many ways are fitted in all: a fit of a long run takes seconds.
+const MOST_FITTED: usize = 60;
+
 /// A track without detours, and a shape that was fitted to it.
 pub(super) fn without_detours(
     readings: &SlowReadings,
@@ -24,11 +27,16 @@ pub(super) fn without_detours(
 ) -> SlowShape {
     let together = Together::of(readings);
     let mut jumps = found_jumps(readings, &found);
+    let mut fitted = 0;
     for _ in 0..MOST {
         let better = jumps.iter().filter(|jump| !jump.predicted).find_map(|jump| {
             let ways =
                 [true, false].into_iter().flat_map(|forwards| led(&together, &found, jump.row, forwards));
             ways.filter(|_| !interrupt()).find_map(|way| {
+                fitted += 1;
+                if fitted > MOST_FITTED {
+                    return None;
+                }
                 let other = along(&together, &found, way.phi0, interrupt);
                 let explains = way.explains
                     || (other.explains(EXACT) && other.shape.chi_square <= found.shape.chi_square);
@@ -50,7 +58,7 @@ struct Led {
 }
 
 /// The orientations with a stretch that begins at a turn led on from the sample before it, or back from the first one after it: to where the track is met again, or to the end, and as
-/// far as the readings bear it out where that is not all of it.
+/// far as the readings bear it out where that is not all of it. Where the body has no such pose any more, the latter alone.
 fn led(together: &Together<'_>, found: &SlowShape, turn: usize, forwards: bool) -> Vec<Led> {
     let outline = Outline::of(&found.shape.support.coefficients(), 0);
     let mut phi0 = found.track.phi0.clone();
@@ -58,10 +66,13 @@ fn led(together: &Together<'_>, found: &SlowShape, turn: usize, forwards: bool) 
     let rows: Vec<usize> = if forwards { (turn..phi0.len()).collect() } else { (0..turn).rev().collect() };
     // as the whole is held against its readings
     let sigma = found.sigma.max(found.misfit);
-    let (mut square, mut borne_out, mut turns) = (0.0, None, 0.0);
-    let mut count = 0;
+    let (mut square, mut borne_out, mut turns, mut count) = (0.0, 0, 0.0, 0);
+    let mut is_lost = false;
     for row in rows {
-        let Some((pose, _)) = together.pose(row, last, &outline, PI) else { return Vec::new() };
+        let Some((pose, _)) = together.pose(row, last, &outline, PI) else {
+            is_lost = true;
+            break;
+        };
         last = pose;
         let apart = last - phi0[row];
         let whole = (apart / TAU).round() * TAU;
@@ -75,19 +86,21 @@ fn led(together: &Together<'_>, found: &SlowShape, turn: usize, forwards: bool) 
         phi0[row] = last;
         let readings = 2.0 * count as f64;
         if (square / readings).sqrt() <= (1.0 + CERTAIN / (2.0 * readings).sqrt()) * sigma {
-            borne_out = Some((count, phi0.clone()));
+            borne_out = count;
         }
     }
-    if count == 0 {
-        return Vec::new();
-    }
-    let until = |count: usize| if forwards { turn + count } else { turn - count };
-    let rest = if forwards { until(count)..phi0.len() } else { 0..until(count) };
+    let until = |count: usize| if forwards { turn..turn + count } else { turn - count..turn };
+    let part = (0 < borne_out && borne_out < count).then(|| {
+        let mut own = found.track.phi0.clone();
+        own[until(borne_out)].copy_from_slice(&phi0[until(borne_out)]);
+        Led { phi0: own, explains: true }
+    });
     // whole turns between what was led and what it met are no jumps
+    let rest = if forwards { turn + count..phi0.len() } else { 0..turn - count };
     phi0[rest].iter_mut().for_each(|own| *own += turns);
-    let explains = borne_out.as_ref().is_some_and(|(own, _)| *own == count);
-    let part = borne_out.filter(|_| !explains).map(|(_, phi0)| Led { phi0, explains: true });
-    [Some(Led { phi0, explains }), part].into_iter().flatten().collect()
+    let is_part = is_lost && borne_out < count;
+    let whole = (count > 0 && !is_part).then_some(Led { phi0, explains: borne_out == count });
+    whole.into_iter().chain(part).collect()
 }
 
 /// The shape along another track: fitted anew, or as it was where it has kinks.

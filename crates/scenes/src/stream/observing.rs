@@ -5,7 +5,7 @@ use super::told::{StreamAnswer, StreamTally, WindowReport};
 use crate::channels::known_sensors;
 use crate::run::Experiment;
 use crate::scene::{Method, SceneError};
-use palmistry_observe::{FALSE_ALARMS, Learned, Signals, Task, Tested};
+use palmistry_observe::{FALSE_ALARMS, Learned, Signals, Task, Tested, UpdateEnd};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -30,6 +30,7 @@ impl SoFar {
             updates: 0,
             fit: 0,
             contradicted: 0,
+            spent: 0,
             tested: Tested::default(),
             innovations: None,
             believed: [0; 2],
@@ -190,6 +191,7 @@ impl<'a> Observing<'a> {
             tally.fit += track.updates.iter().filter(|update| update.is_borne_out()).count();
             track.updates.iter().for_each(|update| update.count_in(&mut tally.tested));
             tally.contradicted += track.updates.iter().filter(|update| update.is_contradicted()).count();
+            tally.spent += track.updates.iter().filter(|update| update.end == UpdateEnd::StepsSpent).count();
             if let Some(own) = track.innovations {
                 tally.innovations = Some(tally.innovations.map_or(own, |before| before.with(own)));
             }

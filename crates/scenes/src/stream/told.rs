@@ -2,7 +2,7 @@
 
 use crate::run::Experiment;
 use crate::scene::Method;
-use palmistry_observe::{Fault, Innovations, SampleEstimate, Tested, Update};
+use palmistry_observe::{Fault, Innovations, SampleEstimate, Tested, Update, passes_unwindowed};
 
 /// What arrives.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -81,6 +81,8 @@ pub struct StreamTally {
     pub fit: usize,
     /// Those that converged and do not fit.
     pub contradicted: usize,
+    /// Those whose search did not come to an end: all of its steps were spent.
+    pub spent: usize,
     /// All of them together, and where they meet.
     pub tested: Tested,
     /// The innovations of a filter, over all windows; none of other methods.
@@ -95,23 +97,25 @@ impl StreamTally {
         self.contradicted > 0 || self.tested.together().is_some_and(|all| !all.fits)
     }
 
-    /// Whether a method that does not work by windows has an answer, followed its model somewhere after its first sample, and passes the test of its innovations, where it has
-    /// any: as `Track::passes`.
+    /// Whether a method that does not work by windows passes; see [`passes_unwindowed`].
     pub fn passes(&self) -> bool {
         let [believed, unseen] = self.believed;
-        believed > 0 && (unseen == 0 || unseen + 1 < believed) && self.innovations.is_none_or(|own| own.fits)
+        passes_unwindowed(believed, unseen, self.innovations.as_ref())
     }
 }
 
 impl StreamEnd {
-    /// Whether no update is contradicted, and each method by windows has one that fits; where there is none by windows, whether each filter passes its test. Of what was
+    /// Whether no update is contradicted, each search came to an end, and each method by windows has an update that fits; where there is none by windows, whether each filter passes its test. Of what was
     /// cut off before it had any answer none is asked for.
     pub fn is_sound(&self) -> bool {
         let is_whole = self.cut_off.is_none();
         let by_windows = |tally: &StreamTally| tally.method.is_by_windows();
         let has_windows = self.observers.iter().any(by_windows);
         self.observers.iter().all(|tally| match by_windows(tally) {
-            true => !tally.is_contradicted() && (tally.fit > 0 || (!is_whole && tally.updates == 0)),
+            true => {
+                let fits = tally.fit > 0 || (!is_whole && tally.updates == 0);
+                fits && tally.spent == 0 && !tally.is_contradicted()
+            }
             false => has_windows || tally.passes() || (!is_whole && tally.believed[0] == 0),
         })
     }

@@ -17,6 +17,9 @@ const MOST_CHANGES: usize = 10_000;
 /// What a motion may cost: steps of the integrator, those that look for a change of mode included. A minute of sliding takes thousands.
 const ALLOWANCE: Allowance = Allowance { bytes: u64::MAX, nodes: u64::MAX, steps: 300_000 };
 
+/// So many of the longest steps are integrated before the modes are looked at: what lies behind the next change is thrown away.
+const AHEAD: f64 = 64.0;
+
 /// By how much a sliding contact may slide the other way, in m/s, and what sticks leave its cone, in parts of the forces, before it is
 /// seen: ten times what the integration leaves.
 const SEEN: f64 = 1e-11;
@@ -84,9 +87,15 @@ impl Motion<'_> {
         moment
     }
 
+    /// Why nothing is integrated any more, if the budget is spent.
+    fn spent(&self) -> Option<String> {
+        let spent = self.budget.steps(0).err()?;
+        Some(format!("{spent} of the integrator: is its duration in seconds?"))
+    }
+
     fn steps(&self, from: Rubbed, end: f64) -> (Vec<Rubbed>, Option<String>) {
-        if let Err(spent) = self.budget.steps(0) {
-            return (vec![from], Some(format!("{spent} of the integrator: is its duration in seconds?")));
+        if let Some(why) = self.spent() {
+            return (vec![from], Some(why));
         }
         let rates = |y: &Vector| {
             let now = Rubbed::of(from.time + y[8], y);
@@ -121,9 +130,9 @@ impl Motion<'_> {
         }
     }
 
-    /// Goes on to a time in its modes, or as far as they hold, with what ended them.
+    /// Goes on in its modes to a time, or as far as they hold, with what ended them; or part of the way, where it is far.
     fn advance(&self, from: Rubbed, end: f64) -> (Rubbed, Option<Change>) {
-        let (all, failure) = self.steps(from, end);
+        let (all, failure) = self.steps(from, end.min(from.time + AHEAD * self.longest));
         let mut held = from;
         for step in all.into_iter().skip(1) {
             if let Some(first) = self.change(&step) {
@@ -148,6 +157,10 @@ impl Motion<'_> {
                 None => low = Rubbed { time: middle, ..state },
                 Some(found) => (high, by) = (middle, found),
             }
+        }
+        // where nothing is integrated any more the change is not found
+        if let Some(why) = self.spent() {
+            by = Change::Ends(Ended::Failed { time: low.time, why });
         }
         if let Change::Ends(Ended::ContactLost { time, .. } | Ended::OutOfPalm { time, .. }) = &mut by {
             *time = low.time;
@@ -215,7 +228,7 @@ pub fn simulate_with_friction(
             now = reached;
             let failed = |why: &str| Ended::Failed { time: reached.time, why: why.to_owned() };
             match change {
-                None => now.time = time,
+                None => (),
                 Some(Change::Modes) if changes < MOST_CHANGES => {
                     changes += 1;
                     let left = Some(motion.pair);

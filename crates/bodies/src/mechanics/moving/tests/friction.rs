@@ -253,3 +253,31 @@ fn no_modes_are_told() {
     let error = simulate_with_friction(&hollow_swing(), 0.1, &[1.0]).unwrap_err();
     assert!(error.to_string().contains("friction knows flat palms"), "{error}");
 }
+
+/// A motion with fifty changes of modes in twenty seconds: what was integrated beyond a change is not paid for, and where the budget is spent the motion ends with this word and not with
+/// a paradox.
+#[test]
+fn what_a_motion_costs_is_not_taken_for_its_end() {
+    let form = BodyForm::Harmonics { mean: 1.2, harmonics: vec![[0.0, 0.0], [0.1, 0.0], [0.03, -0.04]] };
+    let shape = Shape::new(&form, CentreOfMass::Uniform).unwrap();
+    let scene = MovingScene {
+        gyration: shape.gyration(),
+        shape,
+        mass: 1.0,
+        rate: 0.0,
+        orientation: 4.95,
+        drive: Drive::Prescribed([swinging(0.82, 0.057, 0.25), swinging(1.605, 0.163, 0.33)]),
+        ..palms_fixed()
+    };
+    let motion = |times: &[f64]| simulate_with_friction(&scene, 0.135, times).unwrap();
+    let fine = motion(&sampled(20.0, 2000));
+    let early = fine.modes.len();
+    assert!(fine.trajectory.ended == Ended::Completed && early > 40, "{early} {:?}", fine.trajectory.ended);
+    let far = motion(&[1e6]);
+    assert!(far.modes.len() > early, "{}", far.modes.len());
+    for ((time, pair), (other, other_pair)) in fine.modes.iter().zip(&far.modes) {
+        assert!(pair == other_pair && (time - other).abs() < 1e-6, "{time} {other}");
+    }
+    let Ended::Failed { time, why } = &far.trajectory.ended else { panic!("{:?}", far.trajectory.ended) };
+    assert!(why.contains("is its duration in seconds") && *time > 100.0, "{time} {why}");
+}
