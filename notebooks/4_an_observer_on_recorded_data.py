@@ -100,7 +100,7 @@ for name, true in zip(("px", "py", "theta"), truth[0]):
     print(f"{name:6} {state['recovered']:9.4f} +- {state['bound']:.4f}   true {true:7.4f}, off by {abs(state['recovered'] - true) / state['bound']:.1f} bounds")
 
 # %% [markdown]
-# The *bound* is that of Cramér and Rao: the standard deviation below which no unbiased estimate from these readings can be. Least squares over the whole window reach it, so that
+# The *bound* is that of Cramér and Rao: the standard deviation below which no unbiased estimate from these measurements can be. Least squares over the whole window reach it, so that
 # an error of one bound is what is to be expected, and of four is not.
 
 # %%

@@ -172,7 +172,7 @@ def generic_rank(model, numbers, limit=None):
     """Rank, dimension, the unknowns that are seen, and the order up to which series were needed."""
     model = ProofFile(model) if isinstance(model, str) else model
     unknowns = [index for index, unknown in enumerate(model.unknown) if unknown and index not in model.initial]
-    # where something is known at the beginning, what is seen is not closed under d/dt: a few orders more than ever were needed
+    # where something is known initial condition, what is seen is not closed under d/dt: a few orders more than ever were needed
     size = (limit or (2 * len(model.states) + 5 if model.initial else len(model.states))) + 1
     series, basis, everything = Series(model, numbers, size), [], []
     for order in range(size):

@@ -68,7 +68,7 @@ impl RankFound {
     }
 
     fn text(&self) -> String {
-        rank_text(&self.answer)
+        rank_text(&self.answer, false)
     }
 
     fn html(&self) -> String {

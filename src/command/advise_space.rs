@@ -12,7 +12,7 @@ impl Advise {
     pub(super) fn run_space(self, scene: SpaceScene) -> miette::Result<Status> {
         for (is_given, option) in [(self.angle1.is_some(), "--angle1"), (self.angle2.is_some(), "--angle2")] {
             if is_given {
-                let help = "leave it out: in space the palms move as the scene says, and how the body is laid is sought";
+                let help = "leave it out: in space the palms move as the scene says, and the body's initial pose is searched for";
                 return Err(Unusable::report(format!("{option} is not for bodies in space"), help));
             }
         }

@@ -54,7 +54,7 @@ pub(crate) struct Certify {
     /// Which rows are to have full rank.
     #[arg(long, value_enum, default_value = "codistribution")]
     rows: Rows,
-    /// Take words of exactly up to K fields; otherwise one more than almost all states need.
+    /// Take Lie derivatives of exactly up to order K; otherwise of one order more than is generically needed.
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=12))]
     order: Option<u16>,
     /// Keep the open boxes in this file, and go on from it if it is there.
@@ -84,7 +84,7 @@ pub(crate) struct Certify {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Rows {
-    /// The differentials of all words of Lie derivatives.
+    /// The differentials of all Lie derivatives.
     Codistribution,
     /// The matrix named 'rows' of the file.
     Own,

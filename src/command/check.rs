@@ -12,7 +12,7 @@ use std::path::PathBuf;
 
 /// Reads proof files, and says all that is wrong with each: syntax, names, kinds of values, references. Decides nothing.
 ///
-/// What only follows from another mistake is not told: a name whose definition cannot be read is not unknown as well. Exit
+/// What only follows from another mistake is not reported: a name whose definition cannot be read is not unknown as well. Exit
 /// status 0 when all files can be used, 2 when one cannot, as 'prove' would have it.
 #[derive(Args)]
 #[command(after_help = "Examples:

@@ -45,7 +45,7 @@ use output::Form;
 use palmistry::file;
 use std::process::ExitCode;
 
-/// Checks mathematics about systems that are seen only through their outputs.
+/// Verifies mathematics about nonlinear control systems: observability, identifiability, Lie derivatives, published equations.
 ///
 /// Write down a control system and what you claim of it in a .proof file (the book has the grammar); palmistry says,
 /// claim by claim, proved, refuted (with a witness) or undecided.
@@ -57,7 +57,7 @@ use std::process::ExitCode;
   palmistry new mypaper                     a folder with a small paper that proves, a comment on each line
   palmistry check mysystem.proof            is it a proof file? every mistake, each at its place
   palmistry prove mysystem.proof --watch    decide its claims, and again whenever it is changed
-  palmistry rank mysystem.proof             is the state seen in the outputs? what is not, and how well what is
+  palmistry rank mysystem.proof             which states and parameters are observable or identifiable?
   palmistry eval mysystem.proof 'L(f, x)' --at x=1/3 --digits 40
   palmistry verify mypaper                  a folder of proof files taken through everything, as a page with pictures
 

@@ -22,27 +22,27 @@ use palmistry::report::{Observed, forget_seconds, observe_json, observe_page, ob
 use palmistry::sweep::shard_of;
 use std::path::{Path, PathBuf};
 
-/// Moves a system, hands on what its sensors tell, and has observers recover its state: the system of any proof file by its own
+/// Simulates a system and its sensors, or reads a recording, and runs observers that estimate its state: the system of any proof file by its own
 /// equations, or a body between two palms by Newton's laws and the contacts.
 ///
 /// SCENE is a TOML file: the state at the start and the inputs as functions of time, or the body, the palms and how they move;
-/// the sensors; and the observers with what they seek, what they are told and where they begin (the book has all keys). The
-/// observers know only the readings and the equations of the scene's proof file. For each update there are the true and
+/// the sensors; and the observers with what they estimate, what they know and their initial guesses (the book has all keys). The
+/// observers know only the measurements and the equations of the scene's proof file. For each update there are the true and
 /// the recovered states, the error, the bound of Cramér and Rao below which no unbiased estimate can be, steps and time.
 ///
-/// With --data - the readings come from standard input as they are written (CSV), and each window is answered as soon as it is there: with
+/// With --data - the measurements come from standard input as they are written (CSV), and each window is answered as soon as it is there: with
 /// --json in a line of JSON, and one at the end. Memory is bounded by a window. What ends a stream early takes nothing back that was answered.
 ///
-/// With --data the readings come from a CSV or Parquet file with the columns that the model needs (time, outputs, inputs);
+/// With --data the measurements come from a CSV or Parquet file with the columns that the model needs (time, outputs, inputs);
 /// faulty rows are reported by number and handled as the scene says, and what --record wrote gives the same answer. With --studies the scene's studies run as well: the
 /// error over many seeds at several levels of noise beside the bound, and the first guesses from which each method arrives.
 ///
 /// Studies can be cut into shards of trials, with --shard and --part, each a process of its own; --merge then answers as --studies
 /// does in one run, to the last bit.
 ///
-/// An update that converged is held against the noise that the scene states: what is left has to be what the noise explains. Where
-/// no noise is stated it is estimated from what is left, which then has to look like noise. The exit status is 1 where an update
-/// converged and does not fit, a method by windows has no update that does, or the body is none of the scene's library.
+/// An update that converged is tested against the noise that the scene states: its residuals have to pass the chi-square test. Where
+/// no noise is stated it is estimated from the residuals, which then have to be white. The exit status is 1 where an update
+/// converged and does not fit, a moving-horizon method has no update that does, or the body is none of the scene's library.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry observe proofs/moll2002/scenes/section_4_6.toml --out observed
@@ -50,7 +50,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Observe {
     /// The scene.
     scene: PathBuf,
-    /// Readings from a file (CSV or Parquet) instead of a simulation; - is standard input (CSV), answered window by window.
+    /// Measurements from a file (CSV or Parquet) instead of a simulation; - is standard input (CSV), answered window by window.
     #[arg(long, value_name = "FILE")]
     pub(super) data: Option<PathBuf>,
     /// Take this seed and not the scene's.
@@ -62,7 +62,7 @@ pub(crate) struct Observe {
     /// Write a page with pictures (index.html) and observe.json into this folder; of a body in space also its surfaces, as PLY and OBJ.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["shard", "missing"])]
     pub(super) out: Option<PathBuf>,
-    /// Write the readings to a file, CSV or Parquet by its extension; - is standard output (CSV), and then nothing is observed.
+    /// Write the measurements to a file, CSV or Parquet by its extension; - is standard output (CSV), and then nothing is observed.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
     pub(super) record: Option<PathBuf>,
     /// Write all of the simulated motion to a file, CSV or Parquet: poses, contact forces, torques, energies, the truth.
@@ -71,12 +71,12 @@ pub(crate) struct Observe {
     /// Write the outline to a file, CSV or Parquet: for each normal the support radius with its band, and the point.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
     pub(super) outline: Option<PathBuf>,
-    /// Write what was believed sample by sample to a file, CSV or Parquet: each state with its bound.
+    /// Write the estimates sample by sample to a file, CSV or Parquet: each state with its bound.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
     pub(super) track: Option<PathBuf>,
     #[command(flatten)]
     pub(super) shards: Shards,
-    /// Tell no times: two runs with one seed on one machine then write the same to the last byte, as a merge does, which knows none.
+    /// Print no times: two runs with one seed on one machine then write the same to the last byte, as a merge does, which knows none.
     #[arg(long)]
     pub(super) no_times: bool,
     /// Print one JSON object: 'observers' with their 'updates' and 'end', and the studies.
@@ -121,7 +121,7 @@ impl Observe {
         bar.inc(1);
         let asks_for_studies = self.studies || self.shards.are_asked();
         if asks_for_studies && experiment.simulated().is_none() {
-            let message = "a study needs the truth, and readings from a file have none";
+            let message = "a study needs the true states, which a recording does not have";
             return Err(Unusable::report(message, "leave out --studies, or simulate"));
         }
         if asks_for_studies && experiment.scene.study.is_empty() {
@@ -149,7 +149,7 @@ impl Observe {
                 (Some(simulation), _) => simulation.table(),
                 (None, Some(motion)) => motion.table(),
                 (None, None) => {
-                    let message = "readings from a file tell no motion";
+                    let message = "a recording has no true motion";
                     return Err(Unusable::report(message, "leave out --motion, or --data"));
                 }
             };
@@ -277,7 +277,7 @@ impl Observe {
         match asked.iter().find(|(_, is_asked)| *is_asked) {
             Some((name, _)) if self.records_to_output() => {
                 let message = format!(
-                    "with --record - the readings are all that is printed, and nothing is observed: {name} asks for more"
+                    "with --record - the measurements are all that is printed, and nothing is observed: {name} asks for more"
                 );
                 Err(Unusable::report(message, "record to a file, or leave the other out"))
             }
@@ -290,8 +290,8 @@ impl Observe {
         self.records_alone()?;
         self.goes_with_modes(scene, is_stream)?;
         if !scene.observer.library.is_empty() && (is_stream || !scene.observer.modes.is_empty()) {
-            let message = "a body is recognised by all readings at once: not by those of a stream, and not beside modes";
-            let help = "leave out [[observer.library]]; or [[observer.modes]], and hold the readings in a file first";
+            let message = "a body is recognised by all measurements at once: not by those of a stream, and not beside modes";
+            let help = "leave out [[observer.library]]; or [[observer.modes]], and put the measurements into a file first";
             return Err(Unusable::report(message, help));
         }
         if is_stream {
@@ -304,14 +304,14 @@ impl Observe {
                 ("--track", self.track.is_some()),
             ];
             if let Some((name, _)) = asked.iter().find(|(_, is_asked)| *is_asked) {
-                let message = format!("{name} needs all of the readings, and a stream is not kept");
+                let message = format!("{name} needs all measurements, and a stream is not kept");
                 return Err(Unusable::report(
                     message,
-                    "hold the readings in a file first, and hand it over with --data",
+                    "put the measurements into a file first, and hand it over with --data",
                 ));
             }
             if scene.data.record.as_deref().is_some_and(|record| record != Path::new("-")) {
-                note("readings come from standard input, and not from the scene's record");
+                note("measurements come from standard input, and not from the scene's record");
             }
         }
         Ok(())
@@ -319,7 +319,7 @@ impl Observe {
 }
 
 /// Why there may be no outline.
-const NO_OUTLINE: &str = "no support radius was seen; an outline takes two palms with the outputs s1 and s2, and r1 and r2 sought and seen";
+const NO_OUTLINE: &str = "no support radius was observable; an outline takes two palms with the outputs s1 and s2, and r1 and r2 estimated and observable";
 
 impl Observe {
     /// The files of `--outline` and `--track`.

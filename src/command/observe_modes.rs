@@ -23,7 +23,7 @@ impl Observe {
         match asked.iter().find(|(_, is_asked)| *is_asked) {
             Some((name, _)) if !scene.observer.modes.is_empty() => {
                 let message = format!(
-                    "modes are told as text or JSON, of readings in a file or simulated: not with {name}"
+                    "modes are reported as text or JSON, of a recording or a simulation: not with {name}"
                 );
                 Err(Unusable::report(message, "leave it out, or [[observer.modes]]"))
             }

@@ -118,7 +118,7 @@ fn margin_in_range(option: &str, margin: f64) -> miette::Result<f64> {
         return Ok(margin);
     }
     let help = "three times the margin has to be less than pi: take one between 0.001 and 1";
-    Err(Unusable::report(format!("{option}: at a margin of {margin} rad no palm angles are left"), help))
+    Err(Unusable::report(format!("{option}: at a margin of {margin} rad there are no palm angles"), help))
 }
 
 impl Poses {

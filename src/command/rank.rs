@@ -28,8 +28,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Decides the rank of the observability codistribution at sampled states.
 ///
-/// First what holds at almost all states: the rank, by power series at random points modulo random primes, and of each unknown whether
-/// it is seen. Then at sampled states: words of Lie derivatives along the drift and the inputs are added shortest first until the rank
+/// First what holds generically, except on a set of measure zero: each state observable or not, each parameter identifiable or not, and
+/// the rank, by power series at random points modulo random primes. Then at sampled states: Lie derivatives along the drift and the inputs are added in increasing order until the rank
 /// stops growing or reaches the dimension. At every state the rank is computed by singular values and certified by exact
 /// arithmetic at that very state. Where the file
 /// defines a matrix named 'rows', its rank is decided at the same states too. Parameters without a range have the values of
@@ -48,17 +48,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(crate) struct Rank {
     /// The proof file.
     file: PathBuf,
-    /// How many states are drawn from the sample box, to see where the rank drops; with 0 only almost all states are spoken of, which takes
-    /// no words of Lie derivatives and no time [default: 1000, where the words are short enough to be written down in a moment, else 0].
+    /// How many states are drawn from the sample box, to see where the rank drops; with 0 only the generic rank is decided, which takes
+    /// no Lie derivatives and no time [default: 1000, where the Lie derivatives are short enough to be written down in a moment, else 0].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=1_000_000_000_000_000))]
     samples: Option<u64>,
     /// Seed of the sampled states.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
-    /// Take words of exactly up to K fields, whether or not the rank still grows.
+    /// Take Lie derivatives of exactly up to order K, whether or not the rank still grows.
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=12))]
     order: Option<u16>,
-    /// Hold these states and parameters fixed, as in omega0=0 or g=0, and sample the rest.
+    /// Fix these states and parameters, as in omega0=0 or g=0, and sample the rest.
     #[arg(long, value_name = "NAME=VALUE,...", value_delimiter = ',')]
     at: Vec<String>,
     /// Sample only states that meet this condition, as in 'sin(phi1) = 0' or '0 < x < 1', or several: 'x = 0, y > 0' (may be
@@ -71,7 +71,7 @@ pub(crate) struct Rank {
     verdict: Wanted,
     /// Give the singular values of the state whose rank is hardest to decide, and its condition, to N significant digits (at most 200);
     /// by doubles they have about three. The digits are what '--verdict' says: all of them certain, or agreed on by
-    /// doubles and double-doubles. The cheapest numbers that suffice are taken; 'climbed' says how many were tried
+    /// doubles and double-doubles. The cheapest numbers that suffice are taken; 'climbed' says from how many number types it
     /// before. Which state is worst is decided by doubles.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_DIGITS as i64))]
     digits: Option<u16>,
@@ -83,15 +83,15 @@ pub(crate) struct Rank {
     verdict_states: u64,
     /// Ask the dual question instead: whether the drift and the inputs can move the state in every direction. That is the rank of
     /// the distribution that they and their brackets span (accessibility), and without the drift itself (strong
-    /// accessibility), at almost all states and at the sampled ones. Outputs play no part.
+    /// accessibility), generically and at the sampled states. Outputs play no part.
     #[arg(long, conflicts_with_all = ["digits", "verdicts", "shard", "merge", "missing"])]
     accessible: bool,
-    /// Write a proof file of the system without what is not seen: its states are the functions that are seen, its claims, which are
+    /// Write a proof file of the observable part of the system: its states are observable functions, its claims, which are
     /// proved, that they move as this file says and that the outputs are the same.
     #[arg(long, value_name = "FILE")]
     reparametrise: Option<PathBuf>,
     /// Instead of sampled states: the sets on which the rank drops, each by its equations, and a proof that off them it is what
-    /// it is at almost all states. The parameters may have any values.
+    /// it is generically. The parameters may have any values.
     #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "shard", "merge", "missing"])]
     where_it_drops: bool,
     /// Write a page with these sets and their proof (index.html), and drops.json, into this folder.
@@ -113,9 +113,12 @@ pub(crate) struct Rank {
     /// Add the coordinates of each state to that table, angles in radians.
     #[arg(long, requires = "table")]
     coordinates: bool,
+    /// Also print the Lie derivatives that were used, the number types that decided, gaps and times.
+    #[arg(long)]
+    details: bool,
     #[command(flatten)]
     shards: Shards,
-    /// Tell no times: two runs with one seed then print the same to the last byte, as a merge does, which knows none.
+    /// Print no times: two runs with one seed then print the same to the last byte, as a merge does, which knows none.
     #[arg(long)]
     no_times: bool,
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
@@ -258,8 +261,8 @@ impl Rank {
             object["reparametrised"] = json!({ "claims": found.claims, "proved": found.proved });
         }
         let text = || match &written {
-            Some(Ok(found)) => format!("{}\n{}", rank_text(&answer), found.in_words()),
-            _ => rank_text(&answer),
+            Some(Ok(found)) => format!("{}\n{}", rank_text(&answer, self.details), found.in_words()),
+            _ => rank_text(&answer, self.details),
         };
         let status =
             if answer.interrupted() || answer.cut_off() { Status::CutOff } else { Status::AsExpected };

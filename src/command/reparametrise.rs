@@ -16,7 +16,7 @@ pub(crate) struct Reparametrisation {
 impl Reparametrisation {
     pub fn in_words(&self) -> String {
         format!(
-            "reparametrised by what is seen: {} of {} claims of the new file are proved",
+            "reparametrised by observable functions: {} of {} claims of the new file are proved",
             self.proved, self.claims
         )
     }
@@ -37,7 +37,7 @@ pub(crate) fn reparametrisation(
     };
     let Some(found) = &branch.motions else {
         return Err(match branch.generic_rank == answer.dimension {
-            true => "everything is seen already".to_owned(),
+            true => "all unknowns are locally observable already".to_owned(),
             false => "the question has conditions on states".to_owned(),
         });
     };

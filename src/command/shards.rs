@@ -254,4 +254,4 @@ fn of_another(path: &Path) -> Report {
 
 /// What can be done about parts that are no whole.
 pub(crate) const NO_WHOLE: &str =
-    "'--missing DIR N' tells which of N shards are to be done; parts of one folder are those of one N";
+    "'--missing DIR N' prints which of N shards are to be done; parts of one folder are those of one N";

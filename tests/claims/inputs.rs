@@ -79,7 +79,7 @@ fn unknown_signals_have_an_order() {
     assert_eq!(mentioned.unknown_count(), 5);
 }
 
-/// `y = c x`, `x' = -k x`: c and x are seen as a product, but where x is known at the beginning.
+/// `y = c x`, `x' = -k x`: c and x are seen as a product, but where the initial condition of x is known.
 #[test]
 fn values_that_are_known_at_the_beginning() {
     let text = "system \"s\" state x param k, c unknown drift f x' = -k*x output c*x";

@@ -221,8 +221,8 @@ fn a_field_is_the_better_proof() {
 fn mistakes_are_told() {
     for (claim, message) in [
         ("claim a: observable(x) = 1", "compared with nothing"),
-        ("claim a: 1 = observable(x)", "a number cannot equal a statement about what is seen"),
-        ("claim a: rank = observable(x)", "a rank cannot equal a statement about what is seen"),
+        ("claim a: 1 = observable(x)", "a number cannot equal a statement about observability"),
+        ("claim a: rank = observable(x)", "a rank cannot equal a statement about observability"),
         ("claim a: observable(x) + 1", "by itself"),
         ("claim a: observable(rank)", "is said of unknowns and functions, not of a rank"),
         ("claim a: observable(x) everywhere", "are said of a rank"),

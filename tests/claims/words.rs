@@ -136,8 +136,7 @@ fn errors_that_follow_are_not_counted_twice() {
         &Paper { title: "a paper".to_owned(), numbering: numbering(), ..Paper::default() },
         &found,
     );
-    let line =
-        "5 erratum, 2 of them on their own: 4.2 follows 4.1, 4.3 follows 4.2, 4.5 follows 4.3 in a.proof.";
+    let line = "5 errata (2 independent, 3 consequential): 4.2 follows 4.1, 4.3 follows 4.2, 4.5 follows 4.3 in a.proof.";
     assert!(report.contains(line), "{report}");
     assert!(report.contains("| 4.5 | erratum | 4.5 (follows 4.3 in a.proof) |"), "{report}");
     // an entry of another file that is none, and a circle through two files

@@ -1,4 +1,4 @@
-//! The well-known models of `proofs/benchmarks`: every file has its citation, its rank and a statement about what is seen, and every
+//! The well-known models of `proofs/benchmarks`: every file has its citation, its rank and a statement about observability, and every
 //! claim is decided as expected. The ranks were held to a program that shares nothing with ours (`benches/peers/generic_rank.py`).
 
 use crate::common::{folder, json, palmistry};

@@ -106,9 +106,9 @@ pub enum Doubt {
     Holds,
     #[error("the two sides differ at a state that meets every condition")]
     Differ,
-    #[error("the two sides cannot be told apart at the state")]
+    #[error("the two sides cannot be distinguished at the state")]
     NotToldApart,
-    #[error("whether the two sides are within the tolerance cannot be told")]
+    #[error("whether the two sides are within the tolerance cannot be decided")]
     ToleranceNotTold,
     #[error("the two sides are printed alike")]
     PrintedAlike,
@@ -122,7 +122,7 @@ pub enum Doubt {
     NoMinor { state: usize, rank: usize },
     #[error("the minor of state {0} vanishes")]
     MinorVanishes(usize),
-    #[error("the minor of state {0} cannot be told from zero")]
+    #[error("the minor of state {0} cannot be distinguished from zero")]
     MinorNotTold(usize),
     #[error(
         "the kernel of state {state} has {found} vectors instead of {wanted}, or not all have an entry a column"
@@ -148,7 +148,7 @@ pub enum Doubt {
     BoxWithoutMinor(usize),
     #[error("boxes {first} and {second} overlap")]
     BoxesOverlap { first: usize, second: usize },
-    #[error("the boxes do not make the volume that is told")]
+    #[error("the boxes do not make up the volume that is stated")]
     VolumeDiffers,
     #[error(
         "full rank could not be shown on all of box {0} by plain interval arithmetic, which does not refute it"
@@ -217,7 +217,7 @@ impl Doubt {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // messages say it
 pub enum Half {
-    #[error("the rank is no less at almost all states; that it is no greater was tried at {states} others")]
+    #[error("the rank is generically no less; that it is no greater was tried at {states} other states")]
     GenericallyNoLess { states: usize },
     #[error(
         "the rank is no less near one state; that it is no less elsewhere is not shown, that it is no greater was tried at {states} others"

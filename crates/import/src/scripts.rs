@@ -364,7 +364,7 @@ impl Script<'_> {
             }
         }
         if !model.beginnings.is_empty() {
-            let remark = "beginnings that the file knows stand at its end as comments: the program uses them only where it is told to";
+            let remark = "known initial conditions stand at the end of the file as comments: the program uses them only where it is asked to";
             model.remarks.push(remark.to_owned());
         }
     }

@@ -52,7 +52,7 @@ impl System {
             self.scalar(&further.right)?;
         }
         if statement.on_sample && !of_numbers {
-            let message = "'on sample' is said of numbers; a rank is that at almost all states";
+            let message = "'on sample' is said of numbers; a rank is the generic one";
             return Err(Problem::new(&statement.span, message, "this claim"));
         }
         let is_rank = |value: &Value| matches!(value, Value::Rank(_) | Value::CodistributionRank);
@@ -64,7 +64,7 @@ impl System {
         if let Some(unequal) =
             statement.except.iter().flatten().flatten().find(|e| e.relation != Relation::Equal)
         {
-            let message = "what is left out is said by equations";
+            let message = "what is left out is given by equations";
             return Err(Problem::new(&unequal.span, message, "no equation"));
         }
         for condition in statement.conditions.iter().chain(statement.except.iter().flatten().flatten()) {

@@ -217,7 +217,7 @@ impl System {
             return Err(self.unknown(&name.text, &name.span, super::elaborate::Wanted::State));
         };
         if self.coordinates.kinds.get(&symbol) == Some(&UnknownKind::Parameter) {
-            let message = format!("'{}' is a constant, and has no value at the beginning alone", name.text);
+            let message = format!("'{}' is a constant, and has no initial condition", name.text);
             return Err(
                 Problem::new(&name.span, message, "declared as unknown").help("write 'param' and 'known'")
             );
@@ -240,9 +240,9 @@ impl System {
                 return Err(Problem::new(
                     &value.span,
                     message,
-                    "a value at the beginning is made of what is known",
+                    "an initial condition is made of what is known",
                 )
-                .help("declare no value: what is not known at the beginning is a state like any other"));
+                .help("declare no value: an unknown initial condition is that of a state like any other"));
             }
             number = self.graph.constant_value(node).cloned();
         }

@@ -223,7 +223,7 @@ impl Value {
             Value::Matrix(m) => format!("a matrix of {} by {}", m.rows, m.columns),
             Value::Rank(_) | Value::CodistributionRank => "a rank".to_owned(),
             Value::Pole { .. } => "the order of a pole".to_owned(),
-            Value::Visible { .. } => "a statement about what is seen".to_owned(),
+            Value::Visible { .. } => "a statement about observability".to_owned(),
             Value::Solutions(_) => "a number of solutions".to_owned(),
             Value::Infinity => "infinity".to_owned(),
         }

@@ -44,7 +44,7 @@ pub(crate) enum Item {
         knowledge: Knowledge,
         list: Vec<DeclaredSignal>,
     },
-    /// What is known at the beginning.
+    /// What has a known initial condition.
     Initial(Vec<DeclaredInitial>),
     /// How often the system was looked at.
     Experiments {

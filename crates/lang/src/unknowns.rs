@@ -54,7 +54,7 @@ pub(crate) struct Coordinates {
     pub hints: BTreeMap<Symbol, RBig>,
     /// What the file says of values at the beginning.
     pub initial: Vec<Equation>,
-    /// Those that are known at the beginning, and whose rates may depend on what is not.
+    /// Those whose initial condition is known, and whose rates may depend on what is not.
     pub known_at_first: BTreeSet<Symbol>,
     /// The outputs that are zero.
     pub zero_outputs: Vec<NodeId>,
@@ -89,7 +89,7 @@ impl System {
     }
 
     /// The coordinates whose differentials no field leads out of: all but the known signals, whose rates are known too. A
-    /// state that is known at the beginning is among them, for its rate need not be known.
+    /// state whose initial condition is known is among them, for its rate need not be known.
     pub fn closed_coordinates(&self) -> Vec<Symbol> {
         let at_first = &self.coordinates.known_at_first;
         let kept = |state: &Symbol| !self.known.contains(state) || at_first.contains(state);
@@ -121,7 +121,7 @@ impl System {
     pub fn stands_for(&self, symbol: Symbol) -> Option<String> {
         let kind = self.coordinates.kinds.get(&symbol);
         let words = match kind {
-            _ if self.coordinates.known_at_first.contains(&symbol) => "known at the beginning",
+            _ if self.coordinates.known_at_first.contains(&symbol) => "known initial condition",
             Some(UnknownKind::Parameter) => "a constant that is to be identified",
             Some(UnknownKind::Signal) if self.known.contains(&symbol) => "a signal that is known",
             Some(UnknownKind::Signal) => "a signal that is not known",

@@ -403,7 +403,7 @@ impl System {
             _ => None,
         }
         .ok_or_else(|| {
-            let message = format!("the length of words is a number from 0 to {LONGEST_WORD}");
+            let message = format!("the order of Lie derivatives is a number from 0 to {LONGEST_WORD}");
             Problem::new(&order.span, message, "this is none")
         })
     }

@@ -43,7 +43,7 @@ impl MovingWindow {
         track.updates.extend(told.updates);
         track.remarks.extend(told.remarks);
         track.remarks.push(format!(
-            "from {:.3} s a window tells too little alone: it has grown to {} samples",
+            "from {:.3} s a window alone determines too little: it has grown to {} samples",
             update.from,
             all.len()
         ));
@@ -67,7 +67,7 @@ impl MovingWindow {
             }
             Some(_) => {
                 track.remarks.push(format!(
-                    "by {:.3} s {MOST} windows together do not tell what is sought: they grow anew from the last one on",
+                    "by {:.3} s {MOST} windows together do not determine what is estimated: they grow anew from the last one on",
                     update.to
                 ));
                 alone()

@@ -104,9 +104,9 @@ impl<'t, 'a> Filtered<'t, 'a> {
         for ((place, is_low), (time, samples)) in &self.held {
             let name = &self.task.full.states[*place];
             let bound = self.task.bounds[*place][usize::from(!is_low)];
-            self.track.remarks.push(format!(
-                "from {time:.3} s '{name}' is held at its bound {bound}, at {samples} samples"
-            ));
+            self.track
+                .remarks
+                .push(format!("from {time:.3} s '{name}' is at its bound {bound}, at {samples} samples"));
         }
         let outputs = 0..self.task.full.outputs.len();
         let rounding = outputs.map(|output| self.task.output_errors(output).rounding).fold(0.0, f64::max);

@@ -118,7 +118,7 @@ impl MovingWindow {
         if fresh.is_borne_out() && update.is_contradicted() {
             let time = update.from;
             track.remarks.push(format!(
-                "at {time:.3} s the readings contradict what the windows before told of what does not move, or of where it is: begun anew"
+                "at {time:.3} s the measurements contradict the constants or the state that earlier windows gave: begun anew"
             ));
             track.updates.push(update);
         }
@@ -129,7 +129,7 @@ impl MovingWindow {
     fn note_bounds(&self, task: &Task<'_>, update: &Update, track: &mut Track) {
         for (place, bound) in &update.at_bounds {
             let name = &task.full.states[*place];
-            track.remarks.push(format!("from {:.3} s '{name}' is held at its bound {bound}", update.from));
+            track.remarks.push(format!("from {:.3} s '{name}' is at its bound {bound}", update.from));
         }
     }
 }

@@ -28,7 +28,9 @@ pub enum ModelError {
     #[error("the system declares no '{name}'")]
     NoSymbol { name: String },
     /// Nothing gives the value of a symbol.
-    #[error("nothing tells '{name}': estimate it, give it under `known`, or hand over a column of that name")]
+    #[error(
+        "nothing determines '{name}': estimate it, give it under `known`, or hand over a column of that name"
+    )]
     NotGiven { name: String },
     /// A value is infinite or none.
     #[error("the value of '{name}' is not finite")]
@@ -42,10 +44,12 @@ pub enum ModelError {
     #[error("the output '{name}' is not among the measured columns ({columns})")]
     NotMeasured { name: String, columns: String },
     /// The delay of what is no output is sought.
-    #[error("the delay of '{column}' cannot be sought: no output of that name depends on what is followed")]
+    #[error(
+        "the delay of '{column}' cannot be estimated: no output of that name depends on what is followed"
+    )]
     DelayOfInput { column: String },
     /// An expression has no value with what is known.
-    #[error("with what is told the rate of '{name}' divides by zero")]
+    #[error("with the given values the rate of '{name}' divides by zero")]
     Pole { name: String },
 }
 

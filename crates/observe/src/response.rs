@@ -37,7 +37,7 @@ pub enum ResponseError {
     #[error("the system declares no '{name}'{near}")]
     NoSymbol { name: String, near: String },
     /// A state has no value at the first time.
-    #[error("nothing tells where '{name}' begins")]
+    #[error("nothing gives the initial condition of '{name}'")]
     NoStart { name: String },
     /// A state that moves by its equations has a function.
     #[error("'{name}' moves by its own equation, and is no function of time")]

@@ -244,7 +244,7 @@ impl<'a> Task<'a> {
         let names: Vec<&str> = names.map(|(_, name)| name.as_str()).collect();
         (!names.is_empty()).then(|| {
             format!(
-                "it compares outputs with readings, and none is read of {}: ask a method by windows",
+                "it compares outputs with measurements, and {} is not measured: use a moving-horizon method",
                 names.join(", ")
             )
         })

@@ -93,7 +93,7 @@ impl Remainder {
         Some(Remainder { back, onto: u.transpose(), free: window.free.clone(), estimated: task.estimated() })
     }
 
-    /// A suspect, and what is left of its direction, of length one where something is.
+    /// A suspect, and the residuals of its direction, of length one where something is.
     fn judge(
         &self,
         direction: Direction,

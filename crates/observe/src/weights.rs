@@ -4,7 +4,7 @@
 //! An output's reading has an error of its own. A column that drives the model errs too, and its errors reach all later samples through
 //! the model: with `S` the derivative of what is expected by the samples of the columns, and `V` the covariance of their errors, the
 //! differences of the true state have the covariance `C = R + S V S^T`. Least squares with `W` for which `W C W^T = 1` is as good as an
-//! estimate from these readings can be (A. C. Aitken, On least squares and linear combination of observations, 1935); the true
+//! estimate from these measurements can be (A. C. Aitken, On least squares and linear combination of observations, 1935); the true
 //! values of the columns are estimated with it, by `V S^T C^-1` of the differences, and `S` is taken there.
 //!
 //! An implicit output, `0 = y(x, reading)`, is one whose reading is zero and has no error of its own: its row of `S` has `dy/dreading` at its
@@ -97,7 +97,7 @@ impl Weights {
         };
         let time = times[0];
         let lost =
-            || Lost { time, why: "the errors of the readings have no covariance in doubles".to_owned() };
+            || Lost { time, why: "the errors of the measurements have no covariance in doubles".to_owned() };
         let recursion = Recursion { sensitivity: &sensitivity, columns: &columns };
         let mut variances = recursion.variances();
         variances.iter_mut().enumerate().for_each(|(i, variance)| *variance += own_variance(&outputs, i));

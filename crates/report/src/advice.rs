@@ -54,7 +54,8 @@ pub fn advice_text(scene: &Scene, advice: &Advice) -> String {
     match &advice.expected {
         Some(expected) => lines.extend(expected_lines(scene, expected)),
         None => lines.push(
-            "what its readings tell is not known: the scene's model does not fit this motion".to_owned(),
+            "what its measurements determine is not known: the scene's model does not fit this motion"
+                .to_owned(),
         ),
     }
     lines.push(String::new());
@@ -71,7 +72,7 @@ fn expected_lines(scene: &Scene, expected: &ExpectedBounds) -> Vec<String> {
         false => "for each nanometre of noise, as the scene states none",
     };
     vec![
-        format!("{} of {} windows see all that is sought", expected.seen, expected.windows),
+        format!("in {} of {} windows all that is estimated is observable", expected.seen, expected.windows),
         format!("expected errors in the median window, {noise}: {}", bounds.join(", ")),
         format!("condition of the median window: {:.1e}", expected.condition),
     ]

@@ -67,6 +67,30 @@ impl Layout {
     }
 }
 
+/// Columns of an answer that is read and not searched.
+const COLUMNS: usize = 80;
+
+/// Adds a sentence, broken at 80 columns.
+pub(crate) fn prose(text: &str, out: &mut String) {
+    add("", 2, text, out);
+}
+
+/// Adds an entry of a list, broken at 80 columns.
+pub(crate) fn item(text: &str, out: &mut String) {
+    add("  ", 4, text, out);
+}
+
+fn add(first: &str, hang: usize, text: &str, out: &mut String) {
+    let layout = Layout { width: Some(COLUMNS), ..Layout::default() };
+    out.push_str(&layout.wrap(first, hang, text));
+    out.push('\n');
+}
+
+/// A number of things: `1 output`, `2 outputs`.
+pub(crate) fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -56,7 +56,7 @@ fn behind(verdict: &Verdict) -> Markup {
     html! {
         @match verdict {
             Verdict::Proved { log2_error, .. } if *log2_error == f64::NEG_INFINITY => "certain",
-            Verdict::Proved { log2_error, .. } => { "but for a probability below " (error_bound(*log2_error)) }
+            Verdict::Proved { log2_error, .. } => { "error probability below " (error_bound(*log2_error)) }
             Verdict::Refuted { witness, .. } => {
                 "at " code { (state_line(witness)) }
                 @if let Some((row, column)) = witness.entry { ", entry " (row) "," (column) }
@@ -73,7 +73,7 @@ pub fn rank_html(answer: &RankAnswer) -> String {
     html! {
         p { b { (answer.title) } }
         @for branch in &answer.branches { (branch_html(branch)) }
-        details { summary { "all that was found" } pre { (rank_text(answer)) } }
+        details { summary { "all that was found" } pre { (rank_text(answer, true)) } }
     }
     .into_string()
 }

@@ -23,7 +23,7 @@ const POLE: RGBColor = RGBColor(250, 250, 250);
 /// Where a standard deviation is infinite: no colour of the scale, and no pole.
 const INFINITE: RGBColor = RGBColor(0, 150, 136);
 /// What is said of it: doubles cannot tell more.
-const INFINITE_TEXT: &str = "infinite: not observable, or not to be told from it";
+const INFINITE_TEXT: &str = "infinite: unobservable, or not distinguishable from it";
 /// So many decades above the smallest value have colours of their own.
 const DECADES: f64 = 6.0;
 /// What is counted or measured.
@@ -54,11 +54,11 @@ fn nothing(infinite: usize, points: usize) -> String {
     match infinite {
         0 => "nothing to draw: there are poles everywhere".to_owned(),
         count if count == points => {
-            "not observable at any point: the standard deviation is infinite, as far as doubles tell"
+            "unobservable at all points: the standard deviation is infinite, as far as doubles show"
                 .to_owned()
         }
         count => format!(
-            "not observable at {count} of {points} points (as far as doubles tell), and poles at the others"
+            "unobservable at {count} of {points} points (as far as doubles show), singular at the others"
         ),
     }
 }

@@ -41,7 +41,7 @@ fn ways<'a>(observed: &SlowObserved<'a>) -> Vec<Way<'a>> {
             count => format!(" and {count} kinks of the curvature"),
         };
         let remark = format!(
-            "order {}{kinks}, {:.2e} m left of a contact; the readings {} explained",
+            "order {}{kinks}, {:.2e} m residual of a contact; the measurements {} explained",
             found.order,
             found.misfit,
             if answers.explained { "are" } else { "are NOT" }
@@ -135,12 +135,14 @@ pub fn slow_text(observed: &SlowObserved<'_>) -> String {
         );
     }
     if answers.together.is_none() {
-        out.push_str("all readings at once: no start could be followed; nothing is recovered\n");
+        out.push_str(
+            "batch estimate of all measurements: no start could be followed; nothing is recovered\n",
+        );
     }
     if !answers.jumps.is_empty() {
         let _ = writeln!(
             out,
-            "jumps that the readings tell, and where descent leads: {}",
+            "jumps found in the measurements, and where descent leads: {}",
             jumps_in_words(answers)
         );
     }
@@ -149,7 +151,7 @@ pub fn slow_text(observed: &SlowObserved<'_>) -> String {
     }
     let votes: Vec<String> =
         answers.votes.iter().take(4).map(|vote| format!("{:.6} m ({})", vote.height, vote.votes)).collect();
-    let _ = writeln!(out, "heights told by zeros of 3.37's numerator: {}", votes.join(", "));
+    let _ = writeln!(out, "heights determined by zeros of 3.37's numerator: {}", votes.join(", "));
     out.push_str(&study_text(observed.study));
     if observed.interrupted {
         out.push_str("interrupted: this is what was done until then\n");
@@ -276,11 +278,11 @@ pub fn slow_page(observed: &SlowObserved<'_>) -> String {
             section #found {
                 h2 { "What each way found" }
                 (ways_table(observed))
-                @if answers.together.is_none() { p.bad { "All readings at once: no start could be followed; nothing is recovered." } }
-                @if !answers.jumps.is_empty() { p { "Jumps that the readings tell, and where descent in the recovered potential leads: " (jumps_in_words(answers)) "." } }
+                @if answers.together.is_none() { p.bad { "Batch estimate of all measurements: no start could be followed; nothing is recovered." } }
+                @if !answers.jumps.is_empty() { p { "Jumps found in the measurements, and where descent in the recovered potential leads: " (jumps_in_words(answers)) "." } }
                 @if let Some(both) = &answers.arrangements { p { "The errors 3.48 and 3.49 of segments, for comparison: " (arrangements_in_words(both)) "." } }
                 p {
-                    "Heights of the centre of mass at the first sample that zeros of 3.37's numerator tell, with their number: "
+                    "Heights of the centre of mass at the first sample determined by zeros of 3.37's numerator, with their number: "
                     @for vote in answers.votes.iter().take(6) { (format!("{:.5} m ({}) ", vote.height, vote.votes)) }
                 }
             }

@@ -173,7 +173,8 @@ fn legend(rows: &[StudyRow], families: &[&str], missing: usize) -> String {
             y + 4.0
         );
     }
-    let mut last = vec!["filled: exact readings, hollow: rounded; lines join numbers of samples".to_owned()];
+    let mut last =
+        vec!["filled: exact measurements, hollow: rounded; lines join numbers of samples".to_owned()];
     if missing > 0 {
         last.push(format!("not drawn: {missing} rows of a way that stopped on most bodies"));
     }

@@ -156,15 +156,15 @@ fn doubt(update: &SpaceUpdate) -> Option<String> {
     let state = update.state.as_ref()?;
     match (update.verdict, state.rival) {
         (SpaceVerdict::Blind, _) if !state.is_minimum => {
-            Some("no least chi-square, other states explain the readings better and better".to_owned())
+            Some("no least chi-square, other states explain the measurements better and better".to_owned())
         }
         (SpaceVerdict::Blind, _) if state.is_noise() => {
-            Some(format!("{:.2} of what they seem to tell is left without their noise", state.curved))
+            Some(format!("{:.2} of what they seem to determine is left without their noise", state.curved))
         }
         (SpaceVerdict::Blind, _) if state.is_bent() => {
             Some("chi-square is no parabola as far as the bounds reach, these say nothing".to_owned())
         }
-        (SpaceVerdict::Blind, _) => Some("a bound is as large as what is sought".to_owned()),
+        (SpaceVerdict::Blind, _) => Some("a bound is as large as what is estimated".to_owned()),
         (SpaceVerdict::Ambiguous, Some(rival)) => Some(format!(
             "another state {:.0} deviations away leaves chi-square {:.1}",
             rival.apart, rival.chi_square
@@ -186,7 +186,7 @@ pub(super) fn headline(observed: &SpaceObserved<'_>, update: &SpaceUpdate) -> St
     if let Some(SolidState { chi_square, degrees, misfit, is_stated, .. }) = &update.state {
         let left = match is_stated {
             true => format!("; chi-square {chi_square:.1} of {degrees}"),
-            false => format!("; {misfit:.1e} m left of a contact, no noise is stated"),
+            false => format!("; {misfit:.1e} m residual of a contact, no noise is stated"),
         };
         out += &left;
     }

@@ -118,7 +118,7 @@ pub fn space_page(observed: &SpaceObserved<'_>) -> String {
         header {
             h1 { (experiment.scene.title) }
             p {
-                "A smooth convex body in space on three palms, from their readings with nothing known; " b { (experiment.readings.times.len()) " samples" } ". "
+                "A smooth convex body in space on three palms, from their measurements with nothing known; " b { (experiment.readings.times.len()) " samples" } ". "
                 @if experiment.truth.is_none() { "Recorded: what is true is not known. " }
                 @if let Some(ended) = space_ended(observed) { (ended) ". " }
             }

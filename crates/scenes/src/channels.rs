@@ -223,11 +223,14 @@ pub(super) fn are_told(
     let Some(first) = unseen.iter().find(|name| CalibrationKind::of(name).is_some()) else { return Ok(()) };
     let others: Vec<&str> = unseen.iter().filter(|name| *name != first).map(String::as_str).collect();
     let message = match others.is_empty() {
-        true => format!("no readings tell '{first}': the rank does not count it"),
-        false => format!("no readings tell '{first}' from {}: the rank is short of them", others.join(", ")),
+        true => format!("no measurements determine '{first}': the rank does not count it"),
+        false => format!(
+            "no measurements distinguish '{first}' from {}: the rank is short of them",
+            others.join(", ")
+        ),
     };
     let place = scene.observer.estimate.iter().position(|name| name == first).unwrap_or(0);
-    let help = "leave it out of 'estimate', or tell one of the others under `known`";
+    let help = "leave it out of 'estimate', or give one of the others under `known`";
     Err(scene.error_at(&format!("observer.estimate[{place}]"), message, "sought here", help))
 }
 

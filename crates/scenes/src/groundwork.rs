@@ -93,7 +93,7 @@ fn known_states(scene: &Scene, system: &System) -> Result<(), SceneError> {
         if !states.contains(&name.as_str()) && !channels::is_sought(system, name) {
             let help = match nearest(name, states.iter().copied()) {
                 Some(near) => format!("perhaps you meant '{near}'"),
-                None => "an observer seeks states; constants are told".to_owned(),
+                None => "an observer estimates states; constants are given".to_owned(),
             };
             let error = ModelError::NoState { name: name.clone(), states: states.join(", ") };
             let place = format!("observer.estimate[{index}]");

@@ -66,7 +66,7 @@ impl Experiment {
                 }
             }
             let exclude = match excluding.as_slice() {
-                [] => "no sign of a state tells them apart".to_owned(),
+                [] => "no sign of a state distinguishes them".to_owned(),
                 all => format!("a bound that says {} excludes it", all.join(" or ")),
             };
             is_other.then(|| {

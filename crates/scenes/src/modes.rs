@@ -169,7 +169,7 @@ impl Experiment {
                 let early =
                     early.map_or_else(String::new, |ended| format!("the motion ended early, {ended}: "));
                 let message = format!("{early}of {samples} samples there is no window");
-                let help = "a window has two samples or more, and some for each unknown to tell anything";
+                let help = "a window has two samples or more, and enough for each unknown to be determined";
                 Err(self.scene.error_at("observer.window", message, "such windows", help))
             }
             _ => Ok(()),

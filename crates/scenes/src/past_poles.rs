@@ -69,7 +69,7 @@ impl Experiment {
                     replaced.push(place);
                     let from = track.updates[place].from;
                     track.remarks.push(format!(
-                        "from {from:.3} s begun anew, from what this window tells without a guess"
+                        "from {from:.3} s begun anew, from what this window determines without a guess"
                     ));
                     continue;
                 }

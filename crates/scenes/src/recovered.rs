@@ -13,7 +13,7 @@ pub struct Reconstruction {
     pub shape: Option<ShapeEstimate>,
     /// The normals that were touched while the body was seen.
     pub coverage: Coverage,
-    /// Shape and motion from all readings at once, where that is where the shape comes from.
+    /// Shape and motion batch estimate of all measurements, where that is where the shape comes from.
     pub whole: Option<WholeMotion>,
     /// Where a motion that explains all readings at once is no answer, because windows that fit say otherwise.
     pub contradiction: Option<Contradiction>,

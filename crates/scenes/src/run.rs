@@ -85,8 +85,9 @@ impl Experiment {
         let Groundwork { scene, names, .. } = &ground;
         let (reading, written) = match (ground.simulated(), &file) {
             (Some(simulated), _) => {
-                let place =
-                    |error: RecordError| scene.error_at("sensor", error.to_string(), "these readings", "");
+                let place = |error: RecordError| {
+                    scene.error_at("sensor", error.to_string(), "these measurements", "")
+                };
                 let mut record = simulated.read(&scene.sensor, &scene.channels, scene.seed).map_err(place)?;
                 let mut written = None;
                 if !names.sources.is_empty() {
@@ -111,7 +112,7 @@ impl Experiment {
         Experiment::with_readings(ground, reading, written, Steady::AreConstants)
     }
 
-    /// The experiment with these readings.
+    /// The experiment with these measurements.
     ///
     /// # Errors
     /// What is wrong with the readings, or with what is asked of them, with the place in the scene.
@@ -133,10 +134,10 @@ impl Experiment {
         };
         let signals = Signals::of_record(&record);
         let signals =
-            signals.map_err(|error| scene.error_at("data", error.to_string(), "these readings", ""))?;
+            signals.map_err(|error| scene.error_at("data", error.to_string(), "these measurements", ""))?;
         channels::are_columns(&scene, &signals)?;
         let signals = channels::corrected(signals, &scene.observer.known).map_err(|error| {
-            scene.error_at("observer.known", error.to_string(), "readings without these", "")
+            scene.error_at("observer.known", error.to_string(), "measurements without these", "")
         })?;
         let question = {
             // of a recording it is that of what the scene describes
@@ -187,7 +188,7 @@ impl Experiment {
                 _ => "observer.estimate",
             };
             let help =
-                "the model and the columns of the readings have to determine the rate of all that is sought";
+                "the model and the columns of the measurements have to determine the rate of all that is estimated";
             self.scene.error_at(place, error.to_string(), "asked for here", help)
         })?;
         if self.scene.observer.guess == Guess::Sample {
@@ -342,5 +343,5 @@ pub(super) fn unusable(scene: &Scene, error: &RecordError) -> SceneError {
         }
         _ => advice,
     };
-    scene.error_at("data", error.to_string(), "the readings of this scene", help)
+    scene.error_at("data", error.to_string(), "the measurements of this scene", help)
 }

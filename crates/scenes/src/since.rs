@@ -35,7 +35,8 @@ impl Since {
     /// # Errors
     /// Where the times have too few digits for the steps between them, or two samples have nearly one time.
     pub fn count(&self, scene: &Scene, record: Record) -> Result<Record, SceneError> {
-        let refuse = |message: String, help: &str| scene.error_at("data", message, "these readings", help);
+        let refuse =
+            |message: String, help: &str| scene.error_at("data", message, "these measurements", help);
         let times = record.times();
         let mut steps: Vec<(usize, f64)> =
             times.windows(2).map(|pair| pair[1] - pair[0]).enumerate().collect();
@@ -46,7 +47,7 @@ impl Since {
         let digit = self.origin.abs() * f64::EPSILON;
         if *usual < FEWEST_DIGITS * digit {
             let message = format!(
-                "times near {:e} s are told to {digit:.0e} s, and samples are {usual:.0e} s apart",
+                "times near {:e} s are given to {digit:.0e} s, and samples are {usual:.0e} s apart",
                 self.origin
             );
             return Err(refuse(

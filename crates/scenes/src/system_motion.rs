@@ -48,9 +48,9 @@ impl SystemMotion {
         most: usize,
     ) -> Result<SystemMotion, SceneError> {
         if !system.zero_outputs().is_empty() {
-            let help = "simulate with these readings as outputs, solved for, and hand over the record as `[data] record` here";
+            let help = "simulate with these measurements as outputs, solved for, and hand over the record as `[data] record` here";
             let message =
-                "an output that is zero ties readings to states, and nothing here solves it for them";
+                "an output that is zero ties measurements to states, and nothing here solves it for them";
             return Err(scene.error_at("model", message.to_owned(), "has such an output", help));
         }
         let inputs = &scene.observer.inputs;

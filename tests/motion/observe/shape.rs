@@ -1,4 +1,4 @@
-//! The shape: held against the body itself, from all readings at once and from what an observer believes.
+//! The shape: held against the body itself, batch estimate of all measurements and from what an observer believes.
 
 use crate::common::{folder, palmistry, write};
 use crate::observe::{NEVER, answers, experiment, text, with};
@@ -125,7 +125,8 @@ fn outline_and_track_are_files() {
     assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
     let told = String::from_utf8_lossy(&run.stdout).into_owned();
     assert!(
-        told.contains("shape, from all readings at once") && told.contains("normals touched: 100.0 %"),
+        told.contains("shape, batch estimate of all measurements")
+            && told.contains("normals touched: 100.0 %"),
         "{told}"
     );
 

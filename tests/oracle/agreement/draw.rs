@@ -1,4 +1,4 @@
-//! Random systems: states that are known at the beginning, signals, parameters, angles, steps.
+//! Random systems: states with a known initial condition, signals, parameters, angles, steps.
 
 use super::super::dice::Dice;
 use super::model::{Coordinate, Knowledge, Model};

@@ -2,7 +2,7 @@
 //! the differentials of all its Lie derivatives by the coordinates that are unknown.
 //!
 //! No rule of the library on when to stop stands here: Lie derivatives are taken along all words of fields to an order that is far beyond the number of
-//! coordinates, of which those that are zero end; what is known at the beginning moves like everything else and is
+//! coordinates, of which those that are zero end; what has a known initial condition moves like everything else and is
 //! left out of the columns at the very end.
 
 use super::polynomial::{Basis, Polynomial};
@@ -218,7 +218,7 @@ impl Model {
     }
 }
 
-/// By hand: `z1' = z2, z2' = x, x' = 0` with output `z1`, both `z` known at the beginning, shows `x` in its second derivative. In steps the
+/// By hand: `z1' = z2, z2' = x, x' = 0` with output `z1`, both `z` with known initial conditions, shows `x` in its second derivative. In steps the
 /// image of a zero map shows what is gone.
 #[test]
 fn by_hand() {

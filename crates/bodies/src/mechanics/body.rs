@@ -10,10 +10,10 @@ use dashu::rational::RBig;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ShapeError {
     /// The radius of curvature may vanish somewhere.
-    #[error("the body cannot be seen to be strictly convex: its harmonics are too large for its size")]
+    #[error("the body cannot be shown to be strictly convex: its harmonics are too large for its size")]
     NotConvex,
     /// The centre of mass may lie outside.
-    #[error("the centre of mass cannot be seen to lie inside the body")]
+    #[error("the centre of mass cannot be shown to lie inside the body")]
     CentreOutside,
 }
 

@@ -323,7 +323,7 @@ impl<'b> Reading<'b> {
         let unknown: Vec<&str> =
             model.constants.iter().filter(|c| c.is_unknown).map(|c| c.name.as_str()).collect();
         if !unknown.is_empty() {
-            model.remarks.push("all parameters are taken to be unknown, and all beginnings: --unknown says otherwise of parameters".to_owned());
+            model.remarks.push("all parameters are taken to be unknown, and all initial conditions: --unknown says otherwise of parameters".to_owned());
         }
         Ok(model)
     }
@@ -389,7 +389,7 @@ impl<'b> Reading<'b> {
         }
         if states_begin {
             model.remarks.push(
-                "initial assignments of states are not taken over: a rank is asked of all beginnings"
+                "initial assignments of states are not taken over: the rank is decided for unknown initial conditions"
                     .to_owned(),
             );
         }

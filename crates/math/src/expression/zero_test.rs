@@ -27,7 +27,7 @@ const ATTEMPTS: usize = 40;
 /// What a test of expressions has found.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ZeroTest {
-    /// All are identically zero, but for an error of probability below `2^log2_error`.
+    /// All are identically zero, error probability below `2^log2_error`.
     Zero {
         /// Zero itself if the expressions were the constant zero and nothing had to be tested.
         log2_error: f64,

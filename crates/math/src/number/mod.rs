@@ -124,14 +124,14 @@ pub enum Refusal {
     /// The divisor is exactly zero: a pole, or an expression that is undefined here.
     #[error("division by zero")]
     DivisionByZero,
-    /// The divisor cannot be told from zero at this precision.
-    #[error("the divisor cannot be told from zero at this precision")]
+    /// The divisor cannot be distinguished from zero at this precision.
+    #[error("the divisor cannot be distinguished from zero at this precision")]
     DivisorNotSeparated,
     /// The argument lies outside the function's real domain, for certain where the arithmetic has bounds.
     #[error("the argument of {} lies outside its domain", .0.name())]
     OutsideDomain(Function),
     /// The argument cannot be told from one outside the function's real domain at this precision.
-    #[error("the argument of {} cannot be told from one outside its domain at this precision", .0.name())]
+    #[error("the argument of {} cannot be distinguished from one outside its domain at this precision", .0.name())]
     DomainNotSeparated(Function),
     /// The value exists but this arithmetic cannot hold it.
     #[error("{} has no exact value here", .0.name())]

@@ -32,7 +32,7 @@ pub enum RecordError {
     },
     /// The extension names no format of records.
     #[error("{} is neither a .csv nor a .parquet file", shown_path(path))]
-    #[diagnostic(help("a record's format is told by its extension: name it .csv or .parquet"))]
+    #[diagnostic(help("a record's format is given by its extension: name it .csv or .parquet"))]
     Extension {
         /// The file.
         path: PathBuf,

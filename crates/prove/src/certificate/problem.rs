@@ -187,7 +187,7 @@ fn ranges_of(system: &mut System, given: &BTreeMap<Symbol, (RBig, RBig)>) -> Res
     let mut values = Vec::new();
     if let Some(open) = system.initial_value_without_a_number() {
         return Err(format!(
-            "'{open}' has a value at the beginning that is no number: give the parameters in it numbers there"
+            "'{open}' has an initial condition that is no number: give the parameters in it numbers there"
         ));
     }
     let without = system.without_range();

@@ -77,7 +77,7 @@ fn left_out(system: &mut System, set: &[Equation], known: &[Guard]) -> Result<Na
         let mut side = |expr: &Expr| -> Result<NodeId, String> {
             let (value, needed) = system.elaborate_guarded(expr).map_err(|problem| problem.message)?;
             needed.into_iter().for_each(|guard| add_guard(&system.graph, &mut guards, guard));
-            value.as_number().ok_or_else(|| "what is left out is said by numbers".to_owned())
+            value.as_number().ok_or_else(|| "what is left out is given by numbers".to_owned())
         };
         let (left, right) = (side(&equation.left)?, side(&equation.right)?);
         vanishing.push(system.graph.sub(left, right));
@@ -130,7 +130,9 @@ pub(super) fn decide(
                 false => format!("exact elimination; the rank is lower where {}", set.join(", ")),
             };
             let engine = match log2_error.is_finite() && claim.matrix.is_none() {
-                true => format!("{engine}, which no field leaves, so that longer words do not raise it"),
+                true => {
+                    format!("{engine}, which no field leaves, so that higher Lie derivatives do not raise it")
+                }
                 false => engine,
             };
             let evidence = vec![Evidence::Rank(certified)];
@@ -185,7 +187,7 @@ fn identity(system: &System, minor: &MinorIdentity, log2_error: f64, rng: &mut i
         match stated {
             Ok(stated) => match stated.check(1, &Effort::new(WORK)) {
                 Finding::NotConfirmed(doubt) if doubt != palmistry_checker::Doubt::Differ => {
-                    why = format!("the checker cannot tell: {doubt}");
+                    why = format!("the checker cannot decide: {doubt}");
                 }
                 _ => return Evidence::Proved(stated),
             },

@@ -32,7 +32,7 @@ pub enum Kept {
 }
 
 /// Why there is nothing for the checker.
-pub(super) const TOO_LONG: &str = "the words that show it are too long to be written down";
+pub(super) const TOO_LONG: &str = "the Lie derivatives that show it are too long to be written down";
 /// The same.
 const NO_STATE: &str = "no state was written down at which all of it exists";
 
@@ -134,7 +134,7 @@ fn as_far_as_it_can_be_told(stated: StatedIdentity) -> Evidence {
     match stated.check(1, &Effort::new(WORK)) {
         Finding::NotConfirmed(
             doubt @ (Doubt::ConditionNotShown(_) | Doubt::RequirementNotShown(_) | Doubt::ToleranceNotTold),
-        ) => Evidence::Unchecked(format!("the checker cannot tell: {doubt}")),
+        ) => Evidence::Unchecked(format!("the checker cannot decide: {doubt}")),
         _ => Evidence::Proved(stated),
     }
 }

@@ -223,9 +223,9 @@ fn in_words(system: &System, open: &Open) -> String {
     let advice =
         if unbounded { "; a bounded region ('where x in [a, b]', 'on sample') may decide it" } else { "" };
     match open.boxes {
-        0 | 1 => format!("no sign is read off, and interval arithmetic does not tell{place}{advice}"),
+        0 | 1 => format!("no sign is read off, and interval arithmetic does not decide it{place}{advice}"),
         boxes => format!(
-            "after {boxes} boxes {share} of the region is open{place}; neither signs of factors nor sums of squares tell{advice}"
+            "after {boxes} boxes {share} of the region is open{place}; neither signs of factors nor sums of squares decide it{advice}"
         ),
     }
 }

@@ -170,7 +170,7 @@ impl Asked<'_> {
             let verdict = match verdict {
                 OnOneBranch::Verdict(Verdict::Proved { .. }, existence) => {
                     let why = format!(
-                        "it is so at almost all states around, and it is not known whether inequalities and domains leave thinner parts \
+                        "it is so generically, and it is not known whether inequalities and domains leave thinner parts \
                          of these: {guards}"
                     );
                     OnOneBranch::Verdict(Verdict::undecided(why), existence)

@@ -98,9 +98,9 @@ pub fn pole_order(
     }
     match leading_coefficient_is_nonzero(&program, &approach, point, generic) {
         Ok(true) => PoleOrder::Order { order: -generic, log2_error },
-        Ok(false) => {
-            PoleOrder::Unknown("the leading coefficient cannot be told from zero at this point".to_owned())
-        }
+        Ok(false) => PoleOrder::Unknown(
+            "the leading coefficient cannot be distinguished from zero at this point".to_owned(),
+        ),
         Err(why) => PoleOrder::Unknown(why),
     }
 }

@@ -93,7 +93,7 @@ pub(super) fn by_bounds(
         .map(|coordinate| format!("{} = {}", coordinate.name, coordinate.exact))
         .collect();
     Verdict::undecided(format!(
-        "the rank is {lower} at almost all states around {}; that it is so on every component of the domain is not shown",
+        "the rank is generically {lower} around {}; that it is so on every component of the domain is not shown",
         place.join(", ")
     ))
 }

@@ -26,7 +26,7 @@ impl Ranks {
         match witness {
             Some(witness) => Verdict::Refuted { engine, witness },
             None => Verdict::undecided(format!(
-                "the rank is {} at almost all states around, but no state in exact numbers was found that shows that it is not {}",
+                "the rank is generically {} around it, but no state in exact numbers was found that shows that it is not {}",
                 self.generic, self.claimed
             )),
         }

@@ -81,14 +81,14 @@ pub(crate) fn decide_codistribution(
     let entries = system.graph.substitute(&words.entries(), &branch.values);
     if !words.is_final() && !words.guessed && found <= claimed && found < columns {
         return Err(format!(
-            "words of up to {} fields give the rank {found}; the fields leave these states, so that longer words may add \
-             to it (to claim a rank for some words, write rank([d(...); ...]))",
+            "Lie derivatives up to order {} give the rank {found}; the fields leave these states, so that higher ones may add \
+             to it (to claim a rank for some Lie derivatives, write rank([d(...); ...]))",
             words.order
         ));
     }
     let scope = match words.stop {
         Stop::Full => "",
-        _ => ", and longer words do not raise it",
+        _ => ", and higher Lie derivatives do not raise it",
     };
     let rows = Rows { entries: &entries, columns, scope, on: &needed };
     let limits = Limits {

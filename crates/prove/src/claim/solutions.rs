@@ -102,7 +102,7 @@ pub(super) fn decide_solutions(
     name: String,
 ) -> Result<Verdict, String> {
     if !statement.conditions.is_empty() || statement.on_sample || statement.except.is_some() {
-        return Err("solutions are counted at almost all states: such a claim takes no conditions".to_owned());
+        return Err("solutions are counted generically: such a claim takes no conditions".to_owned());
     }
     if !statement.further.is_empty() {
         return Err("solutions are compared with one number".to_owned());
@@ -114,7 +114,7 @@ pub(super) fn decide_solutions(
     let branches = solve_conditions(system, &initial).map_err(|why| why.to_string())?;
     let [branch] = branches.as_slice() else {
         return Err(
-            "values at the beginning are given in several ways: of these no solutions are counted".to_owned()
+            "initial conditions are given in several ways: of these no solutions are counted".to_owned()
         );
     };
     let question = SolutionsQuestion {

@@ -38,11 +38,13 @@ pub enum ValueError {
     #[error("division by zero: {0} = 0 at this point")]
     Pole(String),
     /// A divisor could not be told from zero.
-    #[error("{divisor} cannot be told from zero with {bits} bits: the point is a pole, or very near to one")]
+    #[error(
+        "{divisor} cannot be distinguished from zero with {bits} bits: the point is a pole, or very near to one"
+    )]
     NearPole { divisor: String, bits: usize },
     /// The value could not be told from zero, nor be proved to be zero.
     #[error(
-        "the value is smaller than {bound} in magnitude: with {bits} bits it could neither be told from zero nor be proved to be zero"
+        "the value is smaller than {bound} in magnitude: with {bits} bits it could neither be distinguished from zero nor be proved to be zero"
     )]
     PerhapsZero { bound: String, bits: usize },
     /// The value could not be told from the middle between two decimals.
@@ -188,7 +190,7 @@ pub fn exists_at(graph: &Graph, guards: &[Guard], values: &HashMap<Symbol, RBig>
                     Some(true) => break,
                     Some(false) => return Err(ValueError::Outside(guard.text(graph))),
                     None => {
-                        let why = "it cannot be told whether the term exists".to_owned();
+                        let why = "whether the term exists cannot be decided".to_owned();
                         ValueError::NearEdge { why, term: guard.text(graph), bits }
                     }
                 },

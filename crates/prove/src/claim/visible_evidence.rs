@@ -58,7 +58,7 @@ pub(super) fn kept_outputs(
             state: &point.state,
             terms: &[],
         }
-        .identity("no output changes along an unseen field", field.log2_error, None)
+        .identity("no output changes along an unobservable direction", field.log2_error, None)
     });
     match stated {
         Some(Ok(stated)) => Evidence::Proved(stated),

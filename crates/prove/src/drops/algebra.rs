@@ -292,7 +292,7 @@ pub(super) struct Solved {
     pub value: NodeId,
 }
 
-pub(super) const TOO_LONG: &str = "what is left becomes too long";
+pub(super) const TOO_LONG: &str = "the remainder becomes too long";
 /// Each angle doubles the number of charts.
 const MOST_ANGLES: usize = 4;
 

@@ -173,7 +173,7 @@ fn at_almost_all(system: &mut System, claim: &ClaimedEverywhere, seed: u64) -> R
                 return Ok((words.generic_rank(), words.generic.log2_error));
             }
         }
-        return Err("it is not known that longer words do not raise the rank".to_owned());
+        return Err("it is not known that higher Lie derivatives do not raise the rank".to_owned());
     };
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let is_angle = system.angle_test();
@@ -203,7 +203,7 @@ fn greater(
         Some((state, found)) => {
             Everywhere::Refuted { state, found, set: Vec::new(), log2_error: f64::NEG_INFINITY }
         }
-        None => Everywhere::Open(format!("the rank is {greatest} at almost all states")),
+        None => Everywhere::Open(format!("the generic rank is {greatest}")),
     }
 }
 
@@ -320,9 +320,9 @@ fn on_a_set(algebra: &mut Algebra<'_>, search: &mut Search<'_>, explored: &Explo
         (None, true) => "there are no states".to_owned(),
         (None, false) if full && open.is_empty() => "it is no lower".to_owned(),
         (None, false) => "it is not decided whether it is lower".to_owned(),
-        (Some(lowered), true) if some => format!("it is lower at all states: {lowered}"),
+        (Some(lowered), true) if some => format!("it is rank-deficient at all states: {lowered}"),
         (Some(lowered), true) => {
-            format!("it is lower at all states, of which none was found: {lowered}")
+            format!("it is rank-deficient at all states, of which none was found: {lowered}")
         }
         (Some(lowered), false) => {
             format!("it is not lower everywhere, or that is not decided; it is {lowered}")

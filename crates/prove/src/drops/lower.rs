@@ -33,7 +33,7 @@ impl Search<'_> {
                     return self.rank_on(algebra, case);
                 }
                 return short(Err(format!(
-                    "the field {field} leaves it, so that longer words may add to the rank"
+                    "the field {field} leaves it, so that higher Lie derivatives may add to the rank"
                 )));
             }
             let ranks = self.rows.ranks(algebra, &case.chart, point, &mut self.rng);
@@ -42,7 +42,7 @@ impl Search<'_> {
                 if self.rows.extend(algebra) {
                     return self.rank_on(algebra, case);
                 }
-                return short(Err("longer words may add to the rank".to_owned()));
+                return short(Err("higher Lie derivatives may add to the rank".to_owned()));
             }
         }
         let (mut doubtful, mut rank) = (Vec::new(), 0);
@@ -99,7 +99,7 @@ impl Search<'_> {
                     vanishes |= *power > 0 && case.reduced(factor)?.is_zero();
                 }
                 if !vanishes {
-                    return Ok(Err("a minor is not seen to vanish there".to_owned()));
+                    return Ok(Err("a minor was not shown to vanish there".to_owned()));
                 }
             }
         }
@@ -171,9 +171,11 @@ impl Search<'_> {
         if self.rows.is_of_words() {
             let field = leaving_field(algebra, case);
             if let Some(field) = field {
-                return Err(format!("the field {field} leaves it, so that longer words may add to the rank"));
+                return Err(format!(
+                    "the field {field} leaves it, so that higher Lie derivatives may add to the rank"
+                ));
             }
-            let longer_may_add = || Err("longer words may add to the rank".to_owned());
+            let longer_may_add = || Err("higher Lie derivatives may add to the rank".to_owned());
             if !self.rows.have_rested(growth) {
                 return longer_may_add();
             }

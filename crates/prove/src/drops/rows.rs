@@ -15,7 +15,7 @@ use std::collections::HashMap;
 pub(super) struct Rows {
     /// The columns whose rank is asked for; they are the first.
     pub columns: usize,
-    /// All of them: of words those of what is known at the beginning too.
+    /// All of them: of words those of known initial conditions too.
     pub width: usize,
     /// What the columns of words are by, in their order.
     by: Vec<Symbol>,

@@ -153,7 +153,7 @@ fn initial_equations(system: &mut System) -> Result<Initial, String> {
         for side in [&equation.left, &equation.right] {
             let (value, needed) = system.elaborate_guarded(side).map_err(|problem| problem.message)?;
             found.guards.extend(needed);
-            sides.push(value.as_number().ok_or("a value at the beginning is a number")?);
+            sides.push(value.as_number().ok_or("an initial condition is a number")?);
         }
         found.texts.push(format!("{} = {}", system.graph.text(sides[0]), system.graph.text(sides[1])));
         found.vanishing.push(system.graph.sub(sides[0], sides[1]));
@@ -170,7 +170,7 @@ pub(super) fn initial_values(system: &mut System) -> Result<Assignment, String> 
     let mut branches = solve_conditions(system, &equations).map_err(|why| why.to_string())?;
     match (branches.pop(), branches.is_empty()) {
         (Some(only), true) => Ok(only.values),
-        _ => Err("values at the beginning are given in several ways".to_owned()),
+        _ => Err("initial conditions are given in several ways".to_owned()),
     }
 }
 
@@ -179,7 +179,7 @@ pub(super) fn initial_values(system: &mut System) -> Result<Assignment, String> 
 /// # Errors
 /// In words.
 pub(super) fn on_all_states(system: &System) -> Result<(), String> {
-    system.require_continuous("where a rank drops is told by Lie derivatives")?;
+    system.require_continuous("where a rank drops is decided by Lie derivatives")?;
     if !system.zero_outputs().is_empty() {
         return Err(
             "outputs that are zero tie the states to signals: no rank is asked for at all of them".to_owned()

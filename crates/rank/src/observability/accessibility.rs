@@ -30,7 +30,7 @@ const LARGEST_GRAPH: usize = 4_000_000;
 pub struct RankBounds {
     /// The rank at almost all states is no less.
     pub at_least: usize,
-    /// Nor more, but for an error of probability below `2^log2_error`; the number of coordinates where nothing is known.
+    /// Nor more, error probability below `2^log2_error`; the number of coordinates where nothing is known.
     pub at_most: usize,
     /// Minus infinity where there is nothing to err about.
     pub log2_error: f64,

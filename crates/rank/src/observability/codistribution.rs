@@ -296,7 +296,7 @@ impl Codistribution {
 }
 
 /// The rank at almost all states, with only those conditions kept that concern parameters; the dimension, where that
-/// rank is not known for good. A rank falls on a special set, and never rises. Values that are known at the beginning count as
+/// rank is not known for good. A rank falls on a special set, and never rises. Known initial conditions count as
 /// unknown here: where the words that were taken have this rank they span, around such a state, the differentials of all words,
 /// so that at it no longer word adds anything to them, whichever columns are left out.
 fn rank_around(system: &mut System, conditions: &Assignment) -> Ceiling {

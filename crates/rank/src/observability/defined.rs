@@ -85,14 +85,16 @@ impl Defined {
         let mut found = None;
         for bits in PRECISE {
             let Operands::Values(values) = self.values(state, Enclosures::new(bits)) else {
-                found = Some("what outputs and fields divide by cannot be told from zero".to_owned());
+                found =
+                    Some("what outputs and fields divide by cannot be distinguished from zero".to_owned());
                 continue;
             };
             match self.first(&values, |need, value| need.is_met_by_enclosure(value)) {
                 None => return None,
                 Some(Failing { index, may_hold: false }) => return Some(self.not_met(index)),
                 Some(Failing { index, may_hold: true }) => {
-                    found = Some(format!("it cannot be told whether {} with {bits} bits", self.texts[index]));
+                    found =
+                        Some(format!("with {bits} bits it cannot be decided whether {}", self.texts[index]));
                 }
             }
         }

@@ -6,7 +6,7 @@
 //! `E_(k+1) = E_k`, no later one is larger. Three things have to hold for that.
 //!
 //! 1. *The differentials are taken by all coordinates that move and are not measured all the time*: by the unknown ones **and** by
-//!    those whose value is known at the beginning alone ([`System::closed_coordinates`]). Let `z1' = z2, z2' = x, x' = 0` with output `z1`, both `z` known
+//!    those of which the initial condition alone is known ([`System::closed_coordinates`]). Let `z1' = z2, z2' = x, x' = 0` with output `z1`, both `z` known
 //!    at the beginning: by `x` alone the span has the dimensions 0, 0, 1. Once the span by all of them rests, the part by the unknown
 //!    ones does, whichever columns are left out. Known signals need no column: their derivatives are known too, `L_X du` is a
 //!    differential of such.
@@ -46,7 +46,7 @@ pub enum Stop {
     /// The rank has reached the dimension of the state space.
     Full,
     /// The rank has reached that at almost all states around, which no state of the locus can exceed. Where values are
-    /// known at the beginning: that of the differentials by these too.
+    /// their known initial conditions: that of the differentials by these too.
     Ceiling,
     /// One further order did not raise the rank.
     NoGrowth,
@@ -65,7 +65,7 @@ pub enum Stop {
 pub enum Ceiling {
     /// The fields leave no state of the set: what has stopped growing has stopped for good.
     Rests,
-    /// They may, and these are the ranks at almost all states around, with what is known at the beginning as unknown, and of the
+    /// They may, and these are the ranks at almost all states around, with known initial conditions as unknown, and of the
     /// unknowns; a rank falls on a special set, and never rises.
     Around {
         /// That of all that moves.

@@ -339,7 +339,7 @@ impl<'g> RankDecider<'g> {
         kernel.iter().map(|vector| vector.iter().map(value).collect()).collect()
     }
 
-    /// A basis of the directions that no row sees, enclosed; nothing where more than `most` says cannot be told from zero.
+    /// A basis of the directions that no row sees, enclosed; nothing where more than `most` says cannot be distinguished from zero.
     fn enclosed_kernel(&self, state: &State, bits: usize) -> Option<Vec<Vec<Enclosure>>> {
         let arithmetic = Enclosures::new(bits);
         let values = self.values(&self.all, state, arithmetic).ok()?;
@@ -360,7 +360,7 @@ impl<'g> RankDecider<'g> {
         Some(found.into_iter().map(whole).collect())
     }
 
-    /// The rank and the unseen directions by exact elimination.
+    /// The rank and the unobservable directions by exact elimination.
     fn exact(&self, state: &State) -> Result<ExactRank, NoExactRank> {
         let exact = Rationals::default();
         let loaded = self.exact.load(exact).map_err(|_| NoExactRank::NotExact)?;
@@ -383,9 +383,10 @@ impl<'g> RankDecider<'g> {
                 Ok(values) => certain_rank(&arithmetic, self.all.matrix(values), Enclosure::significance)
                     .map(|rank| (self.all.reduction.eliminated + rank, bits))
                     .map_err(|refusal| refusal.to_string()),
-                Err(NoValues::Stopped(Failure { divisor: Some(divisor), .. })) => {
-                    Err(format!("{} cannot be told from zero with {bits} bits", self.graph.text(divisor)))
-                }
+                Err(NoValues::Stopped(Failure { divisor: Some(divisor), .. })) => Err(format!(
+                    "{} cannot be distinguished from zero with {bits} bits",
+                    self.graph.text(divisor)
+                )),
                 Err(NoValues::Stopped(failure)) => {
                     Err(format!("{} is not defined", self.graph.text(failure.node)))
                 }

@@ -191,11 +191,11 @@ impl<'q> RankPreparation<'q> {
         })?;
         if !branch.cell.guards.is_empty() {
             return Err(no(
-                "what the outputs tell depends on signs, and states of all signs may be handed over",
+                "what the outputs determine depends on signs, and states of all signs may be handed over",
             ));
         }
         let found = branch.into_given_states(system, self.question.wanted);
-        found.ok_or_else(|| no("the words of Lie derivatives are too long to be written down"))
+        found.ok_or_else(|| no("the Lie derivatives are too long to be written down"))
     }
 
     /// How many branches of the conditions there are.

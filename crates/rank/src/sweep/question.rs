@@ -45,7 +45,7 @@ pub struct BranchAnswer {
     pub is_final: bool,
     /// Whether the rank is not known because no longer words were looked at, though nobody asked for shorter ones.
     pub cut_off: bool,
-    /// What is not seen as fields, and what is seen of it as functions: where the rank is short of the dimension and no
+    /// What is not seen as fields, and its observable part as functions: where the rank is short of the dimension and no
     /// condition is one on states.
     pub motions: Option<UnseenMotions>,
     /// The rank of the full codistribution at the sampled states.

@@ -26,7 +26,7 @@ use std::collections::BTreeSet;
 
 /// So many states are looked at.
 const STATES: u64 = 200;
-/// Singular values below this part of the largest one, of columns of length one, cannot be told from zero in doubles.
+/// Singular values below this part of the largest one, of columns of length one, cannot be distinguished from zero in doubles.
 const NOISE: f64 = 1e-12;
 
 /// An enclosure is worth a double that is so many of its half widths away from zero.

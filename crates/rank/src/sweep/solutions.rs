@@ -88,8 +88,7 @@ pub fn answer_solutions_telling(
     let equations = system.initial_conditions().to_vec();
     let branches = solve_conditions(system, &equations)?;
     let [branch] = branches.as_slice() else {
-        let several =
-            "values at the beginning that are given in several ways: of these no values are counted";
+        let several = "initial conditions that are given in several ways: of these no values are counted";
         return Err(RankError::Condition(several.to_owned()));
     };
     let asked =

@@ -107,7 +107,7 @@ pub fn region_text(answer: &RegionAnswer) -> String {
     let mut out = format!("{}: {} states", answer.title, answer.dimension);
     match answer.order {
         Some(order) => {
-            let _ = writeln!(out, ", words of up to {order} fields ({})", fields_text(&answer.fields));
+            let _ = writeln!(out, ", Lie derivatives up to order {order} ({})", fields_text(&answer.fields));
         }
         None => out.push_str(", the file's own choice of rows\n"),
     }

@@ -2,7 +2,7 @@
 //! numbers with both values.
 
 use crate::claims::outcomes::{error_bound, explanations, special_text, with_decimal};
-use crate::claims::words::{meaning, words_markdown};
+use crate::claims::words::{meaning, numbered, words_markdown};
 use palmistry_io::foreign::{code_block, code_span, markdown};
 use palmistry_lang::{Basis, Flaw};
 use palmistry_prove::claim::{Outcome, Verdict, Witness};
@@ -142,7 +142,7 @@ fn table(all: &[NumberedEquation<'_>], out: &mut String) {
         .chain(["no entry"])
         .map(|word| (all.iter().filter(|equation| equation.word() == word).count(), word))
         .filter(|(count, _)| *count > 0)
-        .map(|(count, word)| format!("{count} {word}"))
+        .map(|(count, word)| numbered(count, word))
         .collect();
     let _ = writeln!(
         out,

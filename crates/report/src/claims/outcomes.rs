@@ -151,7 +151,7 @@ pub fn claim_line(outcome: &Outcome) -> String {
     let explain = |verdict: &Verdict| match verdict {
         Verdict::Proved { log2_error, .. } if *log2_error == f64::NEG_INFINITY => "certain".to_owned(),
         Verdict::Proved { log2_error, .. } => {
-            format!("but for a probability below {}", error_bound(*log2_error))
+            format!("error probability below {}", error_bound(*log2_error))
         }
         Verdict::Refuted { witness, .. } => witness_line(witness),
         Verdict::Definition { text } => text.clone(),

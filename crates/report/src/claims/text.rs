@@ -5,7 +5,7 @@ use crate::claims::outcomes::{
 };
 use crate::claims::words::counts_text;
 use crate::formula::statement_latex;
-use crate::layout::{Layout, Tone};
+use crate::layout::{Layout, Tone, counted};
 use palmistry_io::foreign;
 use palmistry_lang::Flaw;
 use palmistry_prove::claim::{Outcome, Verdict, Witness};
@@ -70,11 +70,15 @@ pub fn claims_text(
     let unexpected = layout.paint(tone, &format!("{failed} not as expected"));
     let counts = counts_text(outcomes);
     let colon = if counts.is_empty() { "" } else { ": " };
-    let total = format!("{} claims{colon}{counts}; {unexpected}, {:.1} s", outcomes.len(), summary.seconds);
+    let total = format!(
+        "{}{colon}{counts}; {unexpected}, {:.1} s",
+        counted(outcomes.len(), "claim"),
+        summary.seconds
+    );
     lines.push(layout.wrap("", 2, &total));
     match summary.claims {
         Some(claims) if outcomes.len() < claims => {
-            lines.push(format!("interrupted: {} claims are not decided", claims - outcomes.len()));
+            lines.push(format!("interrupted: {} not decided", counted(claims - outcomes.len(), "claim")));
         }
         Some(_) => {}
         None => lines.push("interrupted while the files were read".to_owned()),
@@ -155,7 +159,7 @@ fn details(verdict: &Verdict, say: &mut impl FnMut(&str, &str)) {
     match verdict {
         Verdict::Proved { log2_error, .. } if *log2_error == f64::NEG_INFINITY => say("", "proved: certain"),
         Verdict::Proved { log2_error, .. } => {
-            say("", &format!("proved, but for a probability below {}", error_bound(*log2_error)));
+            say("", &format!("proved, error probability below {}", error_bound(*log2_error)));
         }
         Verdict::Refuted { witness, .. } => sides(witness, say),
         Verdict::Undecided { why } => say("undecided", why),

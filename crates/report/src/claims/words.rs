@@ -11,7 +11,7 @@ pub(crate) const RULE_OF_DAMAGE: &str = "One rule for damage. What is wrong in t
     typesetter's or the scanner's. *Scanning fault* is said only where characters stand that no typesetter sets (glyphs \
     that are no symbol there, a line set twice or broken off). *Print or scan* is said where a sign, dot, prime, tilde, \
     bar, index, bracket, letter or component is missing or another one, once, and what comes before and after has it \
-    right: only the page could tell. *Erratum* is said where the same \
+    right: only the printed page could show whose. *Erratum* is said where the same \
     mistake is carried on, or is one of substance, so that no scanner made it. What is damaged is never *proved*.";
 
 /// What a word says.
@@ -30,7 +30,7 @@ pub(crate) fn meaning(word: &str) -> &'static str {
         "erratum" => "the author's: the printed form is refuted, the corrected one proved",
         "print or scan" => {
             "a sign, dot, tilde, bar, index or bracket: the form in the text is refuted where it can be stated, the \
-             repaired one proved; whose doing it is only the page could tell"
+             repaired one proved; only the printed page could show whose mistake it is"
         }
         "scanning fault" => "the scanner's: characters that no typesetter sets; the repaired form is proved",
         "convention" => {
@@ -54,11 +54,22 @@ pub(crate) fn counts<'o>(outcomes: impl IntoIterator<Item = &'o Outcome>) -> Vec
     Outcome::WORDS.into_iter().map(|word| (word, count(word))).filter(|(_, count)| *count > 0).collect()
 }
 
-/// The same in words: `12 proved, 1 erratum`.
+/// The same in words: `12 proved, 2 errata`.
 pub fn counts_text<'o>(outcomes: impl IntoIterator<Item = &'o Outcome>) -> String {
-    let each: Vec<String> =
-        counts(outcomes).into_iter().map(|(word, count)| format!("{count} {word}")).collect();
+    let each: Vec<String> = counts(outcomes).into_iter().map(|(word, count)| numbered(count, word)).collect();
     each.join(", ")
+}
+
+/// A number of outcomes with a word, in the plural where it is one: `1 erratum`, `2 errata`, `2 proved`.
+pub(crate) fn numbered(count: usize, word: &str) -> String {
+    match (count, word) {
+        (1, _) => format!("1 {word}"),
+        (_, "erratum") => format!("{count} errata"),
+        (_, "definition" | "consequence" | "example" | "scanning fault" | "convention") => {
+            format!("{count} {word}s")
+        }
+        _ => format!("{count} {word}"),
+    }
 }
 
 /// Faults of one kind, in the order of the paper: those that follow from no other, and the others with what they follow
@@ -86,18 +97,28 @@ pub(crate) fn errors<'o>(
 }
 
 impl Errors<'_> {
-    /// How many there are, how many of them are errors of their own, and from what each other one follows.
+    /// How many there are, how many of them are independent, and from what each other one follows.
     pub fn text(&self, word: &str) -> String {
-        let all = self.independent.len() + self.following.len();
-        let mut text = format!(
-            "{all} {word}, {} of them on {} own",
-            self.independent.len(),
-            if all == 1 { "its" } else { "their" }
-        );
-        for (place, (outcome, from)) in self.following.iter().enumerate() {
-            let _ = write!(text, "{} {} follows {from}", if place == 0 { ":" } else { "," }, outcome.id);
+        match self.consequences() {
+            text if text.is_empty() => self.counts(word),
+            text => format!("{}: {text}", self.counts(word)),
         }
-        text
+    }
+
+    /// How many there are, and how many of them are independent of one another.
+    pub fn counts(&self, word: &str) -> String {
+        let (independent, following) = (self.independent.len(), self.following.len());
+        let all = numbered(independent + following, word);
+        match following {
+            0 => all,
+            _ => format!("{all} ({independent} independent, {following} consequential)"),
+        }
+    }
+
+    /// From what each consequential one follows.
+    pub fn consequences(&self) -> String {
+        let each = self.following.iter().map(|(outcome, from)| format!("{} follows {from}", outcome.id));
+        each.collect::<Vec<_>>().join(", ")
     }
 }
 

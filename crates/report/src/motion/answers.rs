@@ -294,7 +294,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
             state_lines(&mut text, observed, &names, last.time, &last.state, known);
         }
         if answer.track.unseen > 0 {
-            let _ = writeln!(text, "  not seen for {} of {samples} samples", answer.track.unseen);
+            let _ = writeln!(text, "  not observable for {} of {samples} samples", answer.track.unseen);
         }
         for other in &answer.track.others {
             let _ = writeln!(
@@ -357,7 +357,7 @@ pub(super) fn state_lines(
             let _ = write!(text, "  bound {bound:.1e}");
         }
         if let Some((_, bound)) = known.at_bounds.iter().find(|(place, _)| *place == i) {
-            let _ = write!(text, "  held at its bound {bound}");
+            let _ = write!(text, "  at its bound {bound}");
         }
         text.push('\n');
     }

@@ -42,7 +42,7 @@ pub(super) fn closure_text(closure: &Closure) -> String {
     }
     for setting in &closure.settings {
         let (gained, left) = (listed(&setting.gained()), listed(&setting.not_told()));
-        let _ = writeln!(text, "  {}: gained {gained}; not told by itself {left}", setting.read);
+        let _ = writeln!(text, "  {}: gained {gained}; non-identifiable {left}", setting.read);
     }
     text
 }
@@ -80,12 +80,12 @@ pub(super) fn closure_json(closure: &Closure) -> Value {
 pub(super) fn closure_section(closure: &Closure) -> Markup {
     html! {
         p {
-            "Here " (begins(closure)) ". That is a delay, so that no finite number of Lie derivatives tells its rank. What stands below is "
+            "Here " (begins(closure)) ". That is a delay, so that no finite number of Lie derivatives gives its rank. What stands below is "
             b { "computed" } ": singular values of all rows of this drive, differentiated at the true unknowns."
         }
         div.scroll {
             table {
-                thead { tr { th { "read" } th { "unknowns" } th { "rank without" } th { "rank with" } th { "gained" } th { "not told by itself" } } }
+                thead { tr { th { "read" } th { "unknowns" } th { "rank without" } th { "rank with" } th { "gained" } th { "non-identifiable" } } }
                 tbody {
                     @for setting in &closure.settings {
                         tr {

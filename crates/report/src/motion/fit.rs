@@ -40,7 +40,7 @@ pub(super) fn fit_in_words(update: &Update) -> String {
 fn explained(fit: &Fit) -> String {
     match fit.from {
         NoiseFrom::Stated => format!(" ({})", p_in_words(fit.probability)),
-        NoiseFrom::Misfit => format!(" (noise estimated from the misfit: {:.1e})", fit.sigma),
+        NoiseFrom::Misfit => format!(" (noise estimated from the residuals: {:.1e})", fit.sigma),
         NoiseFrom::Computation => String::new(),
     }
 }
@@ -49,30 +49,26 @@ fn explained(fit: &Fit) -> String {
 pub(super) fn unexplained(update: &Update, fit: &Fit) -> String {
     let (misfit, probability) = (update.misfit, fit.probability);
     match fit.from {
-        _ if fit.degrees == 0 => "there are no more readings than unknowns".to_owned(),
+        _ if fit.degrees == 0 => "there are no more measurements than unknowns".to_owned(),
         NoiseFrom::Stated if fit.has_outliers() => {
-            format!("{} readings are beyond what normal errors reach, more than a tenth", fit.outliers)
+            format!("{} measurements are outliers, more than a tenth", fit.outliers)
         }
         NoiseFrom::Stated if fit.by_drift().is_some() => format!(
-            "a misfit of {misfit:.1e} for a noise of {:.1e}, and the residuals drift, those of {} most: {}",
+            "residuals of {misfit:.1e} for a noise of {:.1e}, and they drift, those of {} most: {}",
             fit.sigma,
             update.drifting.as_deref().unwrap_or("an output"),
             p_in_words(probability)
         ),
         NoiseFrom::Stated if fit.is_by_neighbours() => format!(
-            "a misfit of {misfit:.1e} for a noise of {:.1e}, whose neighbours agree too much for independent errors: {}",
+            "residuals of {misfit:.1e} for a noise of {:.1e}, correlated with their neighbours: {}",
             fit.sigma,
             p_in_words(probability)
         ),
         NoiseFrom::Stated => {
-            format!(
-                "a misfit of {misfit:.1e} for a noise of {:.1e} has {}",
-                fit.sigma,
-                p_in_words(probability)
-            )
+            format!("residuals of {misfit:.1e} for a noise of {:.1e}: {}", fit.sigma, p_in_words(probability))
         }
         _ => format!(
-            "what is left, {misfit:.1e}, is no noise (neighbours so alike have the probability {probability:.1e})"
+            "the residuals, {misfit:.1e}, are no white noise (neighbours so alike have the probability {probability:.1e})"
         ),
     }
 }
@@ -98,7 +94,7 @@ pub(super) fn suspects_in_words(update: &Update) -> Vec<String> {
         hidden.into_iter().partition(|suspect| suspect.noticed.is_some());
     for (suspects, words) in [
         (large, "errors that are noticed from 100 % (1 s) on only"),
-        (never, "errors that cannot be told from what is sought"),
+        (never, "errors that cannot be distinguished from what is estimated"),
     ] {
         let names: Vec<String> = suspects.iter().map(ToString::to_string).collect();
         if !names.is_empty() {
@@ -109,7 +105,7 @@ pub(super) fn suspects_in_words(update: &Update) -> Vec<String> {
     for suspect in &told {
         let name = suspect.to_string();
         if !suspect.same_as.is_empty() && !named.contains(&name.as_str()) {
-            lines.push(format!("{name} cannot be told from {}", suspect.same_as.join(", ")));
+            lines.push(format!("{name} cannot be distinguished from {}", suspect.same_as.join(", ")));
             named.extend(suspect.same_as.iter().map(String::as_str));
         }
     }
@@ -120,7 +116,7 @@ pub(super) fn suspects_in_words(update: &Update) -> Vec<String> {
         if let Some(best) = best {
             let (error, part) = (best.in_words(best.explains.0), 100.0 * best.explains.1 / fit.chi_square);
             lines.push(format!(
-                "of these {best} explains most, off by about {error}: to first order {part:.0} % of the misfit's square"
+                "of these {best} explains most, off by about {error}: to first order {part:.0} % of the squared residuals"
             ));
         }
     }

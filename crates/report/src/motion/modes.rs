@@ -87,7 +87,7 @@ pub fn modes_text(experiment: &Experiment, windows: &[ModeWindow]) -> String {
                 window.estimates.iter().for_each(|estimate| rank_line(&mut text, estimate));
                 continue;
             }
-            let _ = writeln!(text, "no mode fits, the least misfit is {least:.1e}{}", truth(window));
+            let _ = writeln!(text, "no mode fits, the least residual is {least:.1e}{}", truth(window));
             continue;
         };
         let others = window.estimates.iter().filter(|other| other.fits() && other.name != estimate.name);
@@ -95,7 +95,7 @@ pub fn modes_text(experiment: &Experiment, windows: &[ModeWindow]) -> String {
         let also =
             if others.is_empty() { String::new() } else { format!(" ({} fit worse)", others.join(", ")) };
         let misfit = estimate.update.as_ref().map_or(f64::NAN, |update| update.misfit);
-        let _ = writeln!(text, "{}{also}, misfit {misfit:.1e}{}", estimate.name, truth(window));
+        let _ = writeln!(text, "{}{also}, residual {misfit:.1e}{}", estimate.name, truth(window));
         window.estimates.iter().for_each(|estimate| rank_line(&mut text, estimate));
         if let Some(update) = &estimate.update {
             state_lines(&mut text, experiment, &estimate.sought, update);

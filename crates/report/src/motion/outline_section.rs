@@ -13,7 +13,7 @@ use maud::{Markup, PreEscaped, html};
 pub(super) fn shape_section(observed: &Observed<'_>) -> Markup {
     let Some(found) = reconstruction(observed.answers) else { return html! {} };
     let Some(shape) = &found.shape else {
-        return html! { p.remark { "Nothing was seen of the shape." } };
+        return html! { p.remark { "Nothing of the shape was touched." } };
     };
     let truth = truth(observed.experiment);
     let covered = |angle: f64| found.coverage.contains(angle);

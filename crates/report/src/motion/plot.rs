@@ -163,7 +163,7 @@ pub(super) fn errors(observed: &Observed<'_>, place: usize) -> Option<String> {
 }
 
 /// The names of the outputs that the observers compare with readings, in the order of their surprises, and the standard deviation
-/// of these readings: none where they have no error.
+/// of these measurements: none where they have no error.
 fn outputs(observed: &Observed<'_>) -> Option<(Vec<String>, Option<f64>)> {
     let never = AtomicBool::new(false);
     let task = observed.experiment.task(&never).ok()?;
@@ -209,7 +209,8 @@ pub(super) fn sensor_errors(observed: &Observed<'_>) -> Vec<String> {
             times: times(observed),
             range: (-size, size),
             limits: &limits,
-            band: sigma.map(|sigma| ((-2.0 * sigma, 2.0 * sigma), "two standard deviations of a reading")),
+            band: sigma
+                .map(|sigma| ((-2.0 * sigma, 2.0 * sigma), "two standard deviations of a measurement")),
             ..Frame::default()
         };
         if curves.iter().any(|curve| !curve.points.is_empty()) {
@@ -234,7 +235,8 @@ pub(super) fn sensor_errors(observed: &Observed<'_>) -> Vec<String> {
             range,
             logarithmic: true,
             limits: &limits,
-            band: sigma.map(|sigma| ((range.0, sigma.log10()), "up to one standard deviation of a reading")),
+            band: sigma
+                .map(|sigma| ((range.0, sigma.log10()), "up to one standard deviation of a measurement")),
             ..Frame::default()
         };
         pictures.push(draw(&frame, &curves));

@@ -11,7 +11,7 @@ use std::fmt::Write;
 fn word(verdict: &RecognitionVerdict) -> &'static str {
     match verdict {
         RecognitionVerdict::Recognised(_) => "recognised",
-        RecognitionVerdict::Alike(_) => "cannot be told apart",
+        RecognitionVerdict::Alike(_) => "cannot be distinguished",
         RecognitionVerdict::NoneOfThem => "none of them",
     }
 }
@@ -20,7 +20,7 @@ fn word(verdict: &RecognitionVerdict) -> &'static str {
 fn in_words(found: &Recognition) -> String {
     match &found.verdict {
         RecognitionVerdict::Recognised(_) => format!("it is {}", found.names().join(", ")),
-        RecognitionVerdict::Alike(_) => format!("cannot be told apart: {}", found.names().join(", ")),
+        RecognitionVerdict::Alike(_) => format!("cannot be distinguished: {}", found.names().join(", ")),
         RecognitionVerdict::NoneOfThem => "it is none of them".to_owned(),
     }
 }
@@ -41,7 +41,7 @@ fn measured(number: Measured) -> String {
 pub(super) fn recognition_text(found: &Recognition) -> String {
     let count = found.bodies.len();
     let mut text =
-        format!("\nrecognition among {count} known bodies, from all readings at once: {}\n", in_words(found));
+        format!("\nrecognition among {count} known bodies, from all measurements: {}\n", in_words(found));
     for body in &found.bodies {
         let _ = write!(text, "  {}: {}", body.name, standing(body));
         match body.fits() {
@@ -50,7 +50,7 @@ pub(super) fn recognition_text(found: &Recognition) -> String {
                 let _ = writeln!(text, "; at the first sample {angle} rad, {rate} rad/s");
             }
             false if body.fit.is_some() => {
-                let _ = writeln!(text, "; what is left is {:.1e} m (rms)", body.misfit);
+                let _ = writeln!(text, "; the residual is {:.1e} m (rms)", body.misfit);
             }
             false => text.push('\n'),
         }
@@ -82,7 +82,7 @@ pub(super) fn recognition_json(found: &Recognition) -> Value {
 /// For the page.
 pub(super) fn recognition_section(found: &Recognition) -> Markup {
     html! {
-        p { "Among " (found.bodies.len()) " known bodies, by all readings at once: " b { (in_words(found)) } "." }
+        p { "Among " (found.bodies.len()) " known bodies, by all measurements: " b { (in_words(found)) } "." }
         div.scroll {
             table {
                 thead { tr { th { "body" } th { "" } th { "left of a contact, m (rms)" } th { "angle at the first sample, rad" } th { "rate, rad/s" } } }

@@ -85,7 +85,7 @@ pub(super) fn convexity_in_words(shape: &ShapeEstimate) -> String {
 
 pub(super) fn from_in_words(found: &Reconstruction) -> String {
     match &found.whole {
-        Some(_) => "from all readings at once".to_owned(),
+        Some(_) => "batch estimate of all measurements".to_owned(),
         None => format!("from what {} believed of the support radii", found.track.method.name()),
     }
 }
@@ -95,7 +95,7 @@ pub(super) fn shape_text(experiment: &Experiment, answers: &[Answer]) -> String 
     let mut text = String::new();
     let Some(found) = reconstruction(answers) else { return text };
     let Some(shape) = &found.shape else {
-        let _ = writeln!(text, "\nshape: nothing was seen of it");
+        let _ = writeln!(text, "\nshape: nothing of it was touched");
         text.extend(found.apart.iter().map(|apart| format!("  {}\n", apart_in_words(apart))));
         return text;
     };
@@ -148,7 +148,7 @@ pub(super) fn shape_text(experiment: &Experiment, answers: &[Answer]) -> String 
 }
 
 pub(super) fn widened_in_words(shape: &ShapeEstimate) -> String {
-    format!("the misfit is {:.1} times what bounds explain, and the band is as much wider", shape.widened)
+    format!("the residuals are {:.1} times what bounds explain, and the band is as much wider", shape.widened)
 }
 
 pub(super) fn misfit_in_words(whole: &WholeMotion, shape: &ShapeEstimate) -> String {
@@ -163,7 +163,7 @@ pub(super) fn misfit_in_words(whole: &WholeMotion, shape: &ShapeEstimate) -> Str
         }
         (true, false) => {
             format!(
-                "{left}, no noise being stated, and what is left of neighbours is alike: the band is {:.1} times as wide for it",
+                "{left}, no noise being stated, and residuals of neighbours are alike: the band is {:.1} times as wide for it",
                 shape.widened
             )
         }
@@ -183,7 +183,7 @@ pub(super) fn model_in_words(shape: &ShapeEstimate) -> String {
 pub(super) fn contradiction_in_words(found: &Contradiction) -> String {
     let Contradiction { time, name, by_window, of_all } = found;
     format!(
-        "all readings at once are no answer: they make {name} {:.6} ± {:.1e} at {time:.3} s, and a window that fits {:.6} ± {:.1e}",
+        "the batch estimate of all measurements is no answer: it makes {name} {:.6} ± {:.1e} at {time:.3} s, and a window that fits {:.6} ± {:.1e}",
         of_all.value, of_all.deviation, by_window.value, by_window.deviation
     )
 }
@@ -195,7 +195,7 @@ pub(super) fn apart_in_words(found: &Apart) -> String {
         false => "",
     };
     format!(
-        "all readings at once are no answer: samples are {between:.3} s apart, more happens between them than is followed, and gravity moves a body of this size in {scale:.3} s.{why}"
+        "the batch estimate of all measurements is no answer: samples are {between:.3} s apart, more happens between them than is followed, and gravity moves a body of this size in {scale:.3} s.{why}"
     )
 }
 
@@ -207,7 +207,7 @@ pub(super) fn sizes_in_words(
     digits: usize,
 ) -> Vec<(&'static str, String)> {
     let Some(extent) = shape.extent(&found.coverage) else {
-        return vec![("perimeter and area:", "not those of a convex body, not told".to_owned())];
+        return vec![("perimeter and area:", "not those of a convex body, not given".to_owned())];
     };
     let is_whole = found.coverage.gaps().is_empty();
     let of = |value: Measured, [least, most]: [f64; 2], unit: &str| {

@@ -23,7 +23,7 @@ pub(crate) fn observed_section(experiments: &[Observed<'_>]) -> Markup {
             h2 { "Bodies in motion" }
             p {
                 "A body moves between two palms by Newton's laws and contact geometry; observers get only what touch sensors and "
-                "motors tell, and recover shape and motion with the equations of the proof file. "
+                "motors measure, and recover shape and motion with the equations of the proof file. "
                 code { "palmistry observe" } " writes such a page for any scene, with twice the samples and the errors of the sensors."
             }
             @for observed in experiments {
@@ -89,7 +89,7 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
                 }
                 ", and energy was kept to " (format!("{:.0e} J", simulation.trajectory.energy_drift())) ". "
                 @if sensor.noise == 0.0 && sensor.resolution == 0.0 {
-                    "The contacts were read without error; bounds are for readings good to " (format!("{NOMINAL:.0e} m")) ", and what is left of "
+                    "The contacts were measured without error; bounds are for measurements good to " (format!("{NOMINAL:.0e} m")) ", and the residuals of "
                     "an error comes from the curves between the samples. "
                 } @else {
                     "The contacts were read with errors of " (format!("{:.1e} m", sensor.noise)) " (standard deviation, seed "
@@ -105,7 +105,7 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
                 "; " b { (times.len()) " samples over " (shortest(last - first)) " s" } ". "
                 @if let Some(lost) = motion.ended() { "The motion " b { "ended early: " (lost.to_string()) } ". " }
                 @if sensor.noise == 0.0 && sensor.resolution == 0.0 {
-                    "The outputs were read without error; bounds are for readings good to " (format!("{NOMINAL:.0e}")) ". "
+                    "The outputs were measured without error; bounds are for measurements good to " (format!("{NOMINAL:.0e}")) ". "
                 } @else {
                     "The outputs were read with errors of " (format!("{:.1e}{}", sensor.noise, noise_unit(observed)))
                     " (standard deviation, seed " (scene.seed) ")"
@@ -129,11 +129,11 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
             "Model: " (experiment.system.title) "."
         }
         p {
-            @if scene.observer.guess == Guess::None { "Sought without a first guess, from what the readings themselves tell at first: " }
-            @else { "Sought, with the first guesses: " }
+            @if scene.observer.guess == Guess::None { "Estimated without a first guess, from what the measurements themselves determine at first: " }
+            @else { "Estimated, with the initial guesses: " }
             code { (guesses.collect::<Vec<_>>().join(", ")) }
             @if !experiment.question.clamped.is_empty() {
-                "; held at its guess in the first window: " code { (experiment.question.clamped.join(", ")) }
+                "; fixed at its guess in the first window: " code { (experiment.question.clamped.join(", ")) }
             }
             ". A window has " (scene.observer.window) " steps of time."
         }
@@ -229,7 +229,7 @@ pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
         return html! {
             p.remark {
                 "There is no picture of the body: that takes two palms with the outputs s1 and s2, estimates of r1 and r2, and "
-                "omega0, phi1 and phi2 sought, read or told."
+                "omega0, phi1 and phi2 estimated, measured or given."
             }
         };
     };
@@ -307,7 +307,7 @@ pub(super) fn sensor_pictures(observed: &Observed<'_>) -> Markup {
                 div.two { @for picture in &pictures { (PreEscaped(picture)) } }
                 figcaption {
                     (if observed.experiment.is_about_palms() { "The contact" } else { "The output" }) " that the model expects minus the one that was read. What an observer that is right has "
-                    "left is the error of the sensor, without a trend; a curve that bends within a window tells of a wrong state or "
+                    "left is the error of the sensor, without a trend; a curve that bends within a window shows a wrong state or "
                     "model. A method that compares nothing has no curve."
                 }
             }

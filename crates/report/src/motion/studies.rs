@@ -133,7 +133,7 @@ pub(super) fn ratio_words(map: &CurvatureMap, cell: usize) -> String {
 pub(super) fn compared(map: &CurvatureMap) -> String {
     let seen = map.motions.iter().filter(|motion| matches!(motion.flat, Told::Bound(_))).count();
     format!(
-        "the median of those of {seen} motions in which the body is held (of {}, flat palms see nothing or do not hold it in the others), contacts read to {:.1e} m",
+        "the median of those of {seen} motions in which the body is held (of {}, from flat palms it is unobservable or not held in the others), contacts measured to {:.1e} m",
         map.motions.len(),
         map.noise
     )

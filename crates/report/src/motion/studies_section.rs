@@ -14,7 +14,7 @@ fn curvature(map: &CurvatureMap) -> Markup {
             (PreEscaped(study_plot::curvature(map)))
             figcaption {
                 "The larger bound of Cramér and Rao of both support radii in the first window, over that between flat palms: " (compared(map)) ". "
-                "Below one these palms tell more than flat ones. Curvatures above zero are those of hollow palms."
+                "Below one these palms determine more than flat ones. Curvatures above zero are those of hollow palms."
             }
         }
     }
@@ -30,7 +30,7 @@ pub(super) fn studies(observed: &Observed<'_>) -> Markup {
                 div.grid { @for place in places { (PreEscaped(study_plot::noise(observed, place))) } }
                 figcaption {
                     "The first window by least squares, over many seeds: the root of the mean square error of those that converged, and "
-                    "the bound at the truth, both in decades. Dots on the line: nothing more is to be had from these readings. Dots "
+                    "the bound at the truth, both in decades. Dots on the line: nothing more is to be had from these measurements. Dots "
                     "above it: the search did not find the best state. By chance they are off by a part of about one in the root of twice "
                     "the number of seeds. "
                     @for level in &observed.studied.noise {
@@ -46,8 +46,8 @@ pub(super) fn studies(observed: &Observed<'_>) -> Markup {
                 div.basins { @for basin in &observed.studied.basins { (PreEscaped(study_plot::basin(observed, basin))) } }
                 figcaption {
                     "First guesses of two states, the others as in the scene, from which each method comes within "
-                    (format!("{:.0}%", 100.0 * ARRIVED)) " of all that is sought: after the first window for methods that work by "
-                    "windows, at the last sample for the others. The cross is the truth. Where the readings have errors, and the bound "
+                    (format!("{:.0}%", 100.0 * ARRIVED)) " of all that is estimated: after the first window for methods that work by "
+                    "windows, at the last sample for the others. The cross is the truth. Where the measurements have errors, and the bound "
                     "of a state is near that part of it, they decide as well."
                 }
             }

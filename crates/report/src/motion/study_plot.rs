@@ -65,7 +65,7 @@ pub(super) fn noise(observed: &Observed<'_>, place: usize) -> String {
             .label_style(("sans-serif", 12).into_font().color(&INK))
             .x_label_formatter(&|v| format!("{v:.0e}"))
             .y_label_formatter(&|v| format!("{v:.0e}"))
-            .x_desc(format!("standard deviation of a reading{}", unit.replacen(' ', ", ", 1)))
+            .x_desc(format!("standard deviation of a measurement{}", unit.replacen(' ', ", ", 1)))
             .y_desc(with_unit(observed, name))
             .axis_desc_style(("sans-serif", 12))
             .draw()?;
@@ -170,7 +170,7 @@ pub(super) fn curvature(map: &CurvatureMap) -> String {
         let anchored = words(12).pos(Pos::new(HPos::Left, VPos::Center));
         head.draw(&Text::new(title, (10, 6), words(15)))?;
         for (at, colour, text) in
-            [(14, LESS, "a fourth"), (104, WHITE, "as flat ones"), (214, MORE, "four times, blind")]
+            [(14, LESS, "a fourth"), (104, WHITE, "as flat ones"), (214, MORE, "four times, unobservable")]
         {
             head.draw(&Rectangle::new([(at, 30), (at + 14, 42)], colour.filled()))?;
             head.draw(&Rectangle::new([(at, 30), (at + 14, 42)], INK))?;

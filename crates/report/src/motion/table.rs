@@ -282,7 +282,9 @@ fn blind(observed: &Observed<'_>, update: &Update, weakest: &[f64]) -> String {
     let sign = parts.first().map_or(1.0, |(_, part)| part.signum());
     let parts: Vec<String> = parts.iter().map(|(name, part)| format!("{:+.2} {name}", sign * part)).collect();
     match &parts[..] {
-        [] => "the readings of this window do not tell what is sought".to_owned(),
-        parts => format!("the readings of this window tell least of {}, each in its size", parts.join(" ")),
+        [] => "what is estimated is not observable from the measurements of this window".to_owned(),
+        parts => {
+            format!("the measurements of this window determine {} least, each in its size", parts.join(" "))
+        }
     }
 }

@@ -38,7 +38,7 @@ pub(super) fn innovations_in_words(own: &Innovations) -> String {
     let does = if own.fits { "pass" } else { "do not pass" };
     let white = own.whiteness.map_or_else(String::new, |p| format!("; as white noise {}", p_in_words(p)));
     format!(
-        "its innovations {does} the chi-square test: normalised squares of {:.1} for {} readings with noise of {:.1e} ({}){white}",
+        "its innovations {does} the chi-square test: normalised squares of {:.1} for {} measurements with noise of {:.1e} ({}){white}",
         own.chi_square,
         own.degrees,
         own.sigma,

@@ -69,10 +69,10 @@ pub(super) fn faults(numbering: &Numbering, claims: &[Placed<'_>], anchors: &Anc
                 @for fault in Flaw::ALL {
                     @let found = of_kind(fault);
                     @if !found.is_empty() {
-                        @let text = errors(numbering, outcomes(), fault).text(fault.word());
-                        @let (count, following) = text.split_once(": ").unwrap_or((&text, ""));
+                        @let errors = errors(numbering, outcomes(), fault);
+                        @let (count, following) = (errors.counts(fault.word()), errors.consequences());
                         h3 data-w=(fault.word()) { span.v { (count) } }
-                        p { (meaning(fault.word())) "." @if !following.is_empty() { " Not on their own: " (following) "." } }
+                        p { (meaning(fault.word())) "." @if !following.is_empty() { " Consequential: " (following) "." } }
                         p.links {
                             @for claim in found.into_iter().filter_map(place) {
                                 a href=(format!("#{}", anchors.claim(claim.file, &claim.outcome.id))) { (claim.outcome.id) } " "

@@ -32,10 +32,10 @@ fn told(answer: &DropAnswer) -> Markup {
     html! {
         h3 { "Where the rank drops" }
         p {
-            @if answer.is_final { "At almost all states the rank is " b { (rank) } " of " (dimension) "." }
-            @else { "Asked for is the rank " b { (rank) } " of " (dimension) "; that almost all states have it is not decided." }
+            @if answer.is_final { "Generically the rank is " b { (rank) } " of " (dimension) "." }
+            @else { "Asked for is the rank " b { (rank) } " of " (dimension) "; that it is so generically is not decided." }
             @if !answer.initial.is_empty() {
-                " It is asked for at the beginning, where " (listed(&answer.initial, SHORT)) "."
+                " It is decided for the initial conditions " (listed(&answer.initial, SHORT)) "."
             }
             @if !answer.domain.is_empty() {
                 " It is asked for where all terms exist: "
@@ -60,7 +60,7 @@ fn conclusion(answer: &DropAnswer) -> Markup {
                 (true, true) => { "It drops nowhere." }
                 (true, false) => { "It is lower on these sets, and nowhere else." }
                 (false, true) if answer.minors.is_empty() => { "Where it drops is not known." }
-                (false, true) => { "No set was found on which it is lower; what is left is open." }
+                (false, true) => { "No set was found on which it is lower; the rest is open." }
                 (false, false) => { "It is lower on these sets; whether elsewhere too is open." }
             }
         }

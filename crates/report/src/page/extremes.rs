@@ -78,7 +78,7 @@ fn stressed(studies: &[&StressStudy]) -> Markup {
             "Lines into every singular set of every system down to a distance of 1e-15: where each kind of number first misreports "
             "the rank of the file's own rows, loses more than half of its digits, or refuses, beside the certified rank at the very "
             "state. A short version; " code { "palmistry stress" } " has more states, scales every quantity from 1e-150 to 1e150, "
-            "tells how states are conditioned, and prints every distance."
+            "says how states are conditioned, and prints every distance."
         }
         @for study in studies {
             details {

@@ -3,6 +3,7 @@
 use crate::certificate::answer::region_json;
 use crate::claims::outcomes::{claim_json, claim_line};
 use crate::claims::words::{counts, counts_text, errors};
+use crate::layout::counted;
 use crate::motion::answers::{Observed, observe_json};
 use crate::ranks::answer::rank_json;
 use crate::ranks::{drops_json, taken_for_granted};
@@ -362,12 +363,12 @@ pub fn findings_text(found: &Findings) -> String {
         let found = errors(numbering, found.outcomes(), fault);
         let ids: Vec<&str> = found.independent.iter().map(|outcome| outcome.id.as_str()).collect();
         if !(ids.is_empty() && found.following.is_empty()) {
-            let _ = writeln!(out, "{}; on their own: {}", found.text(fault.word()), ids.join(", "));
+            let _ = writeln!(out, "{}; independent: {}", found.text(fault.word()), ids.join(", "));
         }
     }
     let failed = found.outcomes().filter(|outcome| !outcome.ok).count();
-    let (claims, counts) = (found.outcomes().count(), counts_text(found.outcomes()));
-    let _ = writeln!(out, "{claims} claims: {counts}; {failed} not as expected");
+    let (claims, counts) = (counted(found.outcomes().count(), "claim"), counts_text(found.outcomes()));
+    let _ = writeln!(out, "{claims}: {counts}; {failed} not as expected");
     if numbering.count() > 0 {
         let equations = numbering.equations(found.outcomes());
         let without = equations.iter().filter(|equation| equation.entries.is_empty()).count();

@@ -23,7 +23,7 @@ fn of_a_set(name: &str, found: &UnseenMotions) -> Markup {
     let scope = if found.for_all_parameters { " whatever the parameters" } else { " at the file's values" };
     html! {
         p {
-            "Not seen, at almost all states of " (name) (scope) ": "
+            "Unobservable, generically, in " (name) (scope) ": "
             @for (place, field) in found.fields.iter().enumerate() {
                 @if place > 0 { "; " }
                 span.f { (field_formula(field)) }
@@ -37,7 +37,7 @@ fn of_a_set(name: &str, found: &UnseenMotions) -> Markup {
                 " Along such a field no output and none of its Lie derivatives changes (proved)."
             }
             @if !found.seen.is_empty() {
-                " Seen by themselves: "
+                " Observable: "
                 @for (place, name) in found.seen_names.iter().enumerate() {
                     @if place > 0 { ", " }
                     span.f { (expression(name)) }
@@ -45,7 +45,7 @@ fn of_a_set(name: &str, found: &UnseenMotions) -> Markup {
                 "."
             }
             @if !found.functions.is_empty() {
-                " Seen together: "
+                " Identifiable combinations: "
                 @for (place, function) in found.functions.iter().enumerate() {
                     @if place > 0 { ", " }
                     span.f { (expression(&function.text)) }
@@ -53,7 +53,7 @@ fn of_a_set(name: &str, found: &UnseenMotions) -> Markup {
                 "."
             }
             @if found.functions_missing > 0 {
-                " " (found.functions_missing) " more functions are seen, which were not found in low degree."
+                " " (found.functions_missing) " more identifiable combinations exist, which were not found in low degree."
             }
         }
     }

@@ -65,7 +65,7 @@ fn maps(map: &MapFound, units: Units<'_>) -> Markup {
                 b { (map.view.title) ". " }
                 "How well " (map.view.of.as_deref().unwrap_or("the worst state")) " is observable by these rows: its standard "
                 "deviation over its prior one, where each row is measured up to its own range (computed, not certified). Light is "
-                "small, which is well; dark is large; green is infinite, which is not observable or not to be told from it; white "
+                "small, which is well; dark is large; green is infinite, which is unobservable or not distinguishable from it; white "
                 "is a pole. "
                 @if map.view.of.is_none() { (worst_of(map)) }
                 @if let Some(caption) = &map.view.caption { (caption) }
@@ -176,8 +176,8 @@ fn ranks(ranks: &[SetRank]) -> Markup {
     html! {
         div.scroll { table {
             thead { tr {
-                th { "states" } th { "rank, full codistribution" } th { "not seen" } th { "rank, own rows" } th { "not seen by these" }
-                th { "words needed" } th { "sampled" } th { "certified" } th { "least observable" }
+                th { "states" } th { "rank" } th { "not seen" } th { "rank, rows of the file" } th { "not seen by these" }
+                th { "Lie derivatives used" } th { "sampled" } th { "certified" } th { "least observable" }
             } }
             tbody {
                 @for rank in ranks {

@@ -61,7 +61,7 @@ fn certificate_words(survey: &PoseSurvey) -> String {
     } else if found.is_confined {
         "  proved: at this margin no way without a jump leads through all orientations\n"
     } else {
-        "  undecided whether all orientations can be reached: more levels may tell\n"
+        "  undecided whether all orientations can be reached: more levels may decide it\n"
     });
     out
 }

@@ -57,7 +57,7 @@ fn bounds_text(what: &str, bounds: &RankBounds, full: usize, out: &mut String) {
         Some(rank) => {
             let sure = match bounds.log2_error.is_finite() {
                 // the bound itself is rounded up
-                true => format!("no more, but for a probability below 2^{}", bounds.log2_error.ceil()),
+                true => format!("no more, error probability below 2^{}", bounds.log2_error.ceil()),
                 false => "certain".to_owned(),
             };
             let where_to = match bounds.from_a_state {
@@ -68,7 +68,7 @@ fn bounds_text(what: &str, bounds: &RankBounds, full: usize, out: &mut String) {
         }
         None => writeln!(
             out,
-            "{what}: undecided, a rank of {} to {} of {full} at almost all states",
+            "{what}: undecided, generically a rank of {} to {} of {full}",
             bounds.at_least, bounds.at_most
         ),
     };
@@ -84,7 +84,7 @@ pub fn accessibility_text(answer: &AccessibilityAnswer) -> String {
             let _ = writeln!(out, "where {}", branch.conditions.join(", "));
         }
         if !branch.held.is_empty() {
-            let _ = writeln!(out, "held at the file's values: {}", values_text(&branch.held));
+            let _ = writeln!(out, "fixed at the values in the file: {}", values_text(&branch.held));
         }
         bounds_text("accessibility", &branch.whole, full, &mut out);
         bounds_text("strong accessibility, without the drift itself", &branch.strong, full, &mut out);

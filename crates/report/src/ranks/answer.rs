@@ -3,6 +3,7 @@
 use super::generic::{add_generic_json, finite, generic_text};
 use super::motions::{motions_json, motions_text};
 use super::seen::{deviations_json, deviations_text, direction_text, place_text};
+use crate::layout::{counted, item, prose};
 use crate::names::{by_default_text, fields_json, fields_text, ranges_json, values_json, values_text};
 use palmistry_lang::Range;
 use palmistry_math::number::rational_to_f64;
@@ -108,14 +109,14 @@ pub(super) fn sweep_json(report: &SweepReport) -> Value {
     object
 }
 
-/// Why the words end where they end.
+/// Why no Lie derivatives of higher order were taken.
 pub(crate) fn stop_text(stop: Stop) -> &'static str {
     match stop {
         Stop::Full => "the rank has reached the dimension",
         Stop::Ceiling => "the rank has reached that of the states around",
         Stop::NoGrowth => "the rank stopped growing",
-        Stop::Order => "the longest words that were allowed",
-        Stop::TooMany => "there are too many longer words",
+        Stop::Order => "the highest order that was allowed",
+        Stop::TooMany => "there are too many of higher order",
         Stop::NotTaken => "none were asked for",
         Stop::Interrupted => "interrupted",
     }
@@ -174,79 +175,97 @@ fn total_json(answer: &RankAnswer, branches: Vec<Value>) -> Value {
     })
 }
 
-fn sweep_text(title: &str, report: &SweepReport, out: &mut String) {
-    let _ = writeln!(out, "{title}");
-    if report.samples == 0 {
-        let _ = writeln!(out, "  no state could be decided");
+/// The ranks at the sampled states in one sentence, and what was met on the way.
+fn sampled_text(title: &str, report: &SweepReport, out: &mut String) {
+    let ranks: Vec<String> =
+        report.rank_histogram.iter().rev().map(|(rank, count)| format!("{rank} at {count} states")).collect();
+    let sampled = match ranks.is_empty() {
+        true => "no state could be decided".to_owned(),
+        false => {
+            format!("rank {}; certified at {} of {}", ranks.join(", "), report.certified, report.samples)
+        }
+    };
+    prose(&format!("{title}: {sampled}"), out);
+    if report.disagreements > 0 {
+        item(
+            &format!(
+                "at {} states the singular values alone suggest another rank: {:?}",
+                report.disagreements, report.computed_histogram
+            ),
+            out,
+        );
     }
-    for (rank, count) in report.rank_histogram.iter().rev() {
-        let _ = writeln!(out, "  rank {rank:>2} at {count} states");
+    for (pole, count) in &report.poles {
+        item(&format!("{count} states left out, singular there: {pole}"), out);
     }
-    let _ = writeln!(out, "  certified at {} of {} states", report.certified, report.samples);
+    if report.interrupted {
+        item("interrupted: these are the states done until then", out);
+    }
+}
+
+/// Unobservable directions at single states.
+fn directions_text(report: &SweepReport, out: &mut String) {
+    for direction in &report.unseen {
+        item(
+            &format!(
+                "at {} states unobservable: a direction in {}; for one, {}",
+                direction.count,
+                direction.states.join(", "),
+                direction.example
+            ),
+            out,
+        );
+        item(&format!("  at {}: {}", place_text(&direction.at), direction_text(direction)), out);
+    }
+}
+
+/// How the ranks at the sampled states were decided.
+fn sweep_details(report: &SweepReport, out: &mut String) {
     let rungs: Vec<String> =
         report.rungs.iter().map(|(rung, count)| format!("{} at {count}", rung.name())).collect();
-    let _ = writeln!(out, "  decided by {}; {} states climbed", rungs.join(", "), report.climbed());
-    if report.disagreements > 0 {
-        let _ = writeln!(
+    if !rungs.is_empty() {
+        let climbed = report.climbed();
+        item(
+            &format!("number types: {}; {climbed} states escalated to a higher precision", rungs.join(", ")),
             out,
-            "  at {} states the singular values alone suggest another rank: {:?}",
-            report.disagreements, report.computed_histogram
         );
     }
     if report.smallest_gap.is_finite() {
-        let _ = writeln!(out, "  smallest gap on which a computed rank rests: {:.1e}", report.smallest_gap);
-    }
-    // how hard a rank is to decide says nothing of how well a state is observable: it is for those who ask for digits
-    if let Some((state, spectrum)) = report.worst.as_ref().filter(|_| report.digits.is_some()) {
-        let values: Vec<String> = state.iter().map(|at| format!("{} = {:.6}", at.name, at.value)).collect();
-        let condition = match &report.digits {
-            Some(Ok(found)) => found.condition.clone(),
-            _ => format!("{:.3e}", spectrum.condition()),
-        };
-        let _ = writeln!(out, "  worst conditioned: {condition} at {}", values.join(", "));
-        let (rows, columns) = report.remaining;
-        let _ = writeln!(
-            out,
-            "  (singular values are those of the {rows} by {columns} matrix that remains without unit rows, equilibrated)"
-        );
-    }
-    match &report.digits {
-        None => {}
-        Some(Ok(found)) => {
-            if !found.values.is_empty() {
-                let _ = writeln!(out, "  its singular values: {}", found.values.join(", "));
-            }
-            let _ = writeln!(
-                out,
-                "  {} digits, {} by {}; rungs climbed: {}",
-                found.digits,
-                certainty_text(found.certainty),
-                found.rung.name(),
-                found.climbed
-            );
-        }
-        Some(Err(why)) => {
-            let _ = writeln!(out, "  no digits beyond those of doubles: {why}");
-        }
-    }
-    for direction in &report.unseen {
-        let _ = writeln!(
-            out,
-            "  not seen at {} states: a direction in {}; for one, {}",
-            direction.count,
-            direction.states.join(", "),
-            direction.example
-        );
-        let _ = writeln!(out, "    at {}: {}", place_text(&direction.at), direction_text(direction));
-    }
-    for (pole, count) in &report.poles {
-        let _ = writeln!(out, "  {count} poles left out: {pole}");
-    }
-    if report.interrupted {
-        let _ = writeln!(out, "  interrupted: these are the states done until then");
+        item(&format!("smallest gap on which a computed rank rests: {:.1e}", report.smallest_gap), out);
     }
     if report.seconds.is_finite() {
-        let _ = writeln!(out, "  {:.2} s", report.seconds);
+        item(&format!("{:.2} s", report.seconds), out);
+    }
+}
+
+/// The digits of the worst conditioned state, which were asked for.
+fn digits_text(report: &SweepReport, out: &mut String) {
+    let Some(digits) = &report.digits else { return };
+    // how hard a rank is to decide says nothing of how well a state is observable: it is for those who ask for digits
+    if let Some((state, spectrum)) = &report.worst {
+        let values: Vec<String> = state.iter().map(|at| format!("{} = {:.6}", at.name, at.value)).collect();
+        let condition = match digits {
+            Ok(found) => found.condition.clone(),
+            Err(_) => format!("{:.3e}", spectrum.condition()),
+        };
+        item(&format!("worst conditioned: {condition} at {}", values.join(", ")), out);
+        let (rows, columns) = report.remaining;
+        item(
+            &format!(
+                "(singular values are those of the {rows} by {columns} matrix that remains without unit rows, equilibrated)"
+            ),
+            out,
+        );
+    }
+    match digits {
+        Ok(found) => {
+            if !found.values.is_empty() {
+                item(&format!("its singular values: {}", found.values.join(", ")), out);
+            }
+            let (kind, climbed) = (certainty_text(found.certainty), counted(found.climbed, "escalation"));
+            item(&format!("{} digits, {kind} by {} after {climbed}", found.digits, found.rung.name()), out);
+        }
+        Err(why) => item(&format!("no digits beyond those of doubles: {why}"), out),
     }
 }
 
@@ -272,46 +291,69 @@ pub(crate) fn taken_for_granted(answer: &RankAnswer) -> Vec<String> {
     lines
 }
 
-/// An answer as text.
-pub fn rank_text(answer: &RankAnswer) -> String {
-    let mut out = format!("{}: {} states, {} outputs\n", answer.title, answer.dimension, answer.outputs);
-    let _ = writeln!(out, "fields: {}", fields_text(&answer.fields));
+/// An answer as text: the unknowns, unobservable directions, the sampled ranks, how well each state is observable; and with the details the Lie derivatives that were used, number
+/// types, gaps and times.
+pub fn rank_text(answer: &RankAnswer, details: bool) -> String {
+    let (states, outputs) = (counted(answer.dimension, "unknown"), counted(answer.outputs, "output"));
+    let mut out = format!("{}\n", answer.title);
+    prose(&format!("{states}, {outputs}; {}", fields_text(&answer.fields)), &mut out);
     for line in taken_for_granted(answer) {
-        let _ = writeln!(out, "{line}");
+        prose(&line, &mut out);
     }
     for branch in &answer.branches {
-        if !branch.conditions.is_empty() {
-            let _ = writeln!(out, "where {}", branch.conditions.join(", "));
-        }
-        if !branch.held.is_empty() {
-            let _ = writeln!(
-                out,
-                "held at the file's values: {} (a claim 'rank = n' is about all values)",
-                values_text(&branch.held)
-            );
-        }
-        generic_text(&branch.generic, &branch.unknowns, &mut out);
-        if branch.stop == Stop::NotTaken {
-            branch.motions.iter().for_each(|found| motions_text(found, false, &mut out));
-            let _ = writeln!(out, "no states were sampled (--samples N draws N)");
-            continue;
-        }
-        let _ = writeln!(out, "words that were needed: {}", branch.words.join(", "));
-        let _ =
-            writeln!(out, "words of up to {} fields were taken: {}", branch.order, stop_text(branch.stop));
-        if !branch.is_final {
-            let _ =
-                writeln!(out, "longer words may still raise the rank: nothing here says that they cannot");
-        }
-        branch.motions.iter().for_each(|found| motions_text(found, true, &mut out));
-        sweep_text("the full codistribution", &branch.full, &mut out);
-        branch.deviations.iter().for_each(|found| deviations_text(found, &mut out));
-        if let Some(rows) = &branch.rows {
-            sweep_text("the file's own choice of rows", rows, &mut out);
-        }
+        branch_text(branch, details, &mut out);
     }
     for place in &answer.left_out {
-        let _ = writeln!(out, "no state of the sample box was found where {place}");
+        prose(&format!("no state of the sample box was found where {place}"), &mut out);
     }
     out.trim_end().to_owned()
+}
+
+fn branch_text(branch: &BranchAnswer, details: bool, out: &mut String) {
+    if !branch.conditions.is_empty() {
+        prose(&format!("where {}", branch.conditions.join(", ")), out);
+    }
+    if !branch.held.is_empty() {
+        let values = values_text(&branch.held);
+        prose(
+            &format!("fixed at the values in the file: {values} (a claim 'rank = n' is about all values)"),
+            out,
+        );
+    }
+    generic_text(&branch.generic, &branch.unknowns, out);
+    let sampled = branch.stop != Stop::NotTaken;
+    branch.motions.iter().for_each(|found| motions_text(found, sampled, out));
+    if !sampled {
+        prose("no states were sampled (--samples N draws N)", out);
+        return;
+    }
+    if !branch.is_final {
+        prose("higher Lie derivatives may still raise the rank: nothing here says that they cannot", out);
+    }
+    sampled_text("at sampled states", &branch.full, out);
+    // fields that were found say the same for all states
+    let is_known = branch.motions.as_ref().is_some_and(|found| found.fields_missing == 0);
+    if details || !is_known {
+        directions_text(&branch.full, out);
+    }
+    digits_text(&branch.full, out);
+    let lower = branch.full.rank_histogram.range(..branch.generic_rank).map(|(_, count)| count).sum::<u64>();
+    if lower > 0 {
+        item(&format!("rank-deficient at {lower} of them: --where-it-drops gives the singular set"), out);
+    }
+    if details {
+        let longest = branch.order;
+        item(&format!("Lie derivatives used: {}", branch.words.join(", ")), out);
+        item(&format!("Lie derivatives up to order {longest} were taken: {}", stop_text(branch.stop)), out);
+        sweep_details(&branch.full, out);
+    }
+    if let Some(rows) = &branch.rows {
+        sampled_text("rows of the file at the same states", rows, out);
+        directions_text(rows, out);
+        digits_text(rows, out);
+        if details {
+            sweep_details(rows, out);
+        }
+    }
+    branch.deviations.iter().for_each(|found| deviations_text(found, out));
 }

@@ -93,9 +93,9 @@ pub fn drops_text(answer: &DropAnswer) -> String {
         out,
         "{}",
         match answer.is_final {
-            true => format!("rank {rank} of {dimension} at almost all states"),
+            true => format!("generic rank {rank} of {dimension}"),
             false => format!(
-                "rank {rank} of {dimension} is asked for; whether almost all states have it is not decided"
+                "rank {rank} of {dimension} is asked for; whether it is the generic rank is not decided"
             ),
         }
     );
@@ -103,7 +103,7 @@ pub fn drops_text(answer: &DropAnswer) -> String {
         let _ = writeln!(out, "of those that are asked for, where {}", answer.initial.join(", "));
     }
     if !answer.domain.is_empty() {
-        let _ = writeln!(out, "all words exist where {}", answer.domain.join(", "));
+        let _ = writeln!(out, "all Lie derivatives exist where {}", answer.domain.join(", "));
     }
     for set in &answer.sets {
         let most = if set.exactly { "" } else { "at most " };

@@ -1,5 +1,6 @@
-//! What is seen at almost all states, and of each unknown whether it is.
+//! What is observable generically, except on a set of measure zero, and of each unknown whether it is.
 
+use crate::layout::prose;
 use palmistry_lang::UnknownKind;
 use palmistry_rank::observability::{GenericAnswer, Seen};
 use palmistry_rank::sweep::GenericOnBranch;
@@ -16,8 +17,8 @@ pub(crate) fn unknown_verdict(kind: UnknownKind, seen: Seen) -> &'static str {
     match (kind, seen) {
         (UnknownKind::Parameter, Seen::Yes) => "locally identifiable",
         (_, Seen::Yes) => "locally observable",
-        (UnknownKind::Parameter, Seen::No) => "not identifiable",
-        (_, Seen::No) => "not observable",
+        (UnknownKind::Parameter, Seen::No) => "non-identifiable",
+        (_, Seen::No) => "unobservable",
         (_, Seen::Undecided) => "undecided",
     }
 }
@@ -49,37 +50,26 @@ fn certainty(generic: &GenericAnswer) -> String {
     }
     match generic.log2_error.is_finite() {
         false => "proved by a minor".to_owned(),
-        true => format!("but for an error of probability below 2^{:.0}", generic.log2_error.ceil()),
+        true => format!("error probability below 2^{:.0}", generic.log2_error.ceil()),
     }
 }
 
 /// The answer in one sentence.
 pub(crate) fn generic_sentence(generic: &GenericAnswer) -> String {
     let dimension = generic.dimension;
-    match generic.rank() {
-        Some(rank) if rank == dimension => {
-            format!(
-                "at almost all states the rank is {rank} of {dimension}: all is seen ({})",
-                certainty(generic)
-            )
-        }
-        Some(rank) => {
-            let free = match dimension - rank {
-                1 => "1 degree of freedom is".to_owned(),
-                free => format!("{free} degrees of freedom are"),
-            };
-            format!(
-                "at almost all states the rank is {rank} of {dimension}: {free} left ({})",
-                certainty(generic)
-            )
-        }
-        None => format!(
-            "at almost all states the rank is at least {} and at most {} of {dimension}: {}",
+    let Some(rank) = generic.rank() else {
+        return format!(
+            "generically the rank is at least {} and at most {} of {dimension}: {}",
             generic.at_least,
             generic.at_most,
             generic.open.as_deref().unwrap_or("nothing more is known")
-        ),
-    }
+        );
+    };
+    let means = match dimension - rank {
+        0 => "the observability rank condition holds: locally weakly observable".to_owned(),
+        free => format!("the unobservable distribution has dimension {free}"),
+    };
+    format!("generically the rank is {rank} of {dimension}; {means} ({})", certainty(generic))
 }
 
 /// What is known where somebody did not wait for the states, as one object.
@@ -109,11 +99,11 @@ pub fn rank_so_far_text(file: &str, branches: &[GenericOnBranch]) -> String {
     out
 }
 
-/// The answer and the table of unknowns, in words.
+/// The table of unknowns and then the sentence that it follows from, in words.
 pub(super) fn generic_text(generic: &GenericAnswer, unknowns: &Unknowns, out: &mut String) {
-    let _ = writeln!(out, "{}", generic_sentence(generic));
     let width = unknowns.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
     for ((name, kind), (_, seen)) in unknowns.iter().zip(&generic.unknowns) {
         let _ = writeln!(out, "  {name:<width$}  {:<9}  {}", kind.name(), unknown_verdict(*kind, *seen));
     }
+    prose(&generic_sentence(generic), out);
 }

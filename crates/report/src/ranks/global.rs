@@ -81,26 +81,27 @@ fn in_words(of_it: &SolutionsOf, orders_are_open: bool) -> String {
     let is_constant = of_it.kind == Some(UnknownKind::Parameter);
     match &of_it.solutions {
         Solutions::Undecided(why) => match &of_it.at_least {
-            Some((least, map)) => format!("at least {least}: proved, by {map}; how many is undecided: {why}"),
+            Some((least, map)) => {
+                format!("at least {least} solutions: proved, by {map}; how many is undecided: {why}")
+            }
             None => format!("undecided: {why}"),
         },
-        Solutions::Infinite => "infinitely many: proved".to_owned(),
+        Solutions::Infinite => "infinitely many solutions: proved".to_owned(),
         Solutions::Finite(1) => {
             let word = if is_constant { "globally identifiable" } else { "globally observable" };
             match of_it.at_most {
                 Some((1, log2_error)) => {
-                    format!(
-                        "1, {word}: proved, but for an error of probability below {}",
-                        error_bound(log2_error)
-                    )
+                    format!("{word}: proved, error probability below {}", error_bound(log2_error))
                 }
-                _ => format!("1, {word}: computed"),
+                _ => format!("{word}: computed"),
             }
         }
         Solutions::Finite(count) => {
             let proved = of_it.is_proved();
-            let mut text =
-                format!("{count} over the complex numbers: {}", if proved { "proved" } else { "computed" });
+            let mut text = format!(
+                "{count} solutions over the complex numbers: {}",
+                if proved { "proved" } else { "computed" }
+            );
             match &of_it.at_least {
                 Some((least, map)) if *least < *count => {
                     let _ = write!(text, "; at least {least} that are real: proved, by {map}");
@@ -115,7 +116,7 @@ fn in_words(of_it: &SolutionsOf, orders_are_open: bool) -> String {
                 None => {}
             }
             if orders_are_open && !proved {
-                text.push_str("; further derivatives might tell some of them apart");
+                text.push_str("; further derivatives might exclude some of them");
             }
             text
         }
@@ -127,7 +128,7 @@ pub fn global_text(answer: &GlobalAnswer) -> String {
     let found = &answer.solutions;
     let mut out = format!("{}: {}\n", shown(&answer.file), answer.title);
     if !answer.conditions.is_empty() {
-        let _ = writeln!(out, "at the beginning {}", answer.conditions.join(", "));
+        let _ = writeln!(out, "initial conditions: {}", answer.conditions.join(", "));
     }
     if !answer.held.is_empty() {
         let _ = writeln!(out, "with {}", values_text(&answer.held));
@@ -135,7 +136,7 @@ pub fn global_text(answer: &GlobalAnswer) -> String {
     if !answer.known.is_empty() {
         let _ = writeln!(out, "known: {}", answer.known.join(", "));
     }
-    let _ = writeln!(out, "how many values of each unknown give the same outputs, at almost all states");
+    let _ = writeln!(out, "solutions: how many values of each unknown give the same outputs, generically");
     let width = |of: &dyn Fn(&SolutionsOf) -> usize| found.unknowns.iter().map(of).max().unwrap_or(0);
     let local = |of_it: &SolutionsOf| unknown_verdict(of_it.kind.unwrap_or(UnknownKind::State), of_it.local);
     let (names, locals) = (width(&|of_it| of_it.name.chars().count()), width(&|of_it| local(of_it).len()));

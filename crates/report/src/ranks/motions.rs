@@ -1,7 +1,8 @@
-//! What is not seen as vector fields, and what is seen as functions.
+//! Unobservable directions as vector fields, and identifiable combinations as functions.
 
 use crate::claims::outcomes::error_bound;
 use crate::formula::SignedPart;
+use crate::layout::{counted, item};
 use palmistry_rank::observability::{FieldComponent, UnseenField, UnseenMotions};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -55,43 +56,38 @@ fn is_sum(text: &str) -> bool {
 fn certainty(log2_error: f64) -> String {
     match log2_error == f64::NEG_INFINITY {
         true => "certain".to_owned(),
-        false => format!("but for a probability below {}", error_bound(log2_error)),
+        false => format!("error probability below {}", error_bound(log2_error)),
     }
 }
 
-/// Fields and functions as text, before what was found at sampled states or alone.
+/// Identifiable combinations and unobservable directions as text, before what was found at sampled states or alone.
 pub(super) fn motions_text(found: &UnseenMotions, sampled: bool, out: &mut String) {
-    let directions = found.directions();
-    let directions =
-        if directions == 1 { "one direction".to_owned() } else { format!("{directions} directions") };
-    let scope = if found.for_all_parameters { ", whatever the parameters" } else { "" };
-    let _ = writeln!(out, "not seen at almost all states: {directions}{scope}");
-    for field in &found.fields {
-        let _ =
-            writeln!(out, "  along  {}  (proved, {})", unseen_field_text(field), certainty(field.log2_error));
-    }
+    let scope = if found.for_all_parameters { ", for all parameter values" } else { "" };
     let degree = if found.cut_off { "; higher degrees have too many coefficients to be tried" } else { "" };
-    if found.fields_missing > 0 {
-        let _ = writeln!(
-            out,
-            "  and {} more, of which no field of low degree was found{degree}{}",
-            found.fields_missing,
-            if sampled { ": below each is shown at one state" } else { "" }
-        );
-    }
-    if !found.seen_names.is_empty() {
-        let _ = writeln!(out, "seen by themselves: {}", found.seen_names.join(", "));
+    if !found.functions.is_empty() || found.functions_missing > 0 {
+        let _ = writeln!(out, "identifiable combinations (functions of unobservable unknowns){scope}:");
     }
     for function in &found.functions {
-        let _ =
-            writeln!(out, "seen together: {}  (proved, {})", function.text, certainty(function.log2_error));
+        item(&format!("{}  (proved, {})", function.text, certainty(function.log2_error)), out);
     }
     if found.functions_missing > 0 {
-        let more = match found.functions_missing {
-            1 => "1 more function is seen, which is not found in low degree".to_owned(),
-            missing => format!("{missing} more functions are seen, which are not found in low degree"),
-        };
-        let _ = writeln!(out, "{more}{degree}");
+        let more = counted(found.functions_missing, "more function");
+        item(&format!("{more}, not found in low degree{degree}"), out);
+    }
+    let directions = if found.directions() == 1 { "direction" } else { "directions" };
+    let _ = writeln!(out, "unobservable {directions}, generically{scope}:");
+    for field in &found.fields {
+        item(&format!("{}  (proved, {})", unseen_field_text(field), certainty(field.log2_error)), out);
+    }
+    if found.fields_missing > 0 {
+        let below = if sampled { ": below each is shown at one state" } else { "" };
+        item(
+            &format!(
+                "{} more, of which no field of low degree was found{degree}{below}",
+                found.fields_missing
+            ),
+            out,
+        );
     }
 }
 

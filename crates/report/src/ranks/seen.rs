@@ -1,5 +1,6 @@
-//! What is not seen at a state, and how well everything else is.
+//! What is unobservable at a state, and how well everything else is observable.
 
+use crate::layout::{item, prose};
 use crate::names::plain_number;
 use dashu::rational::RBig;
 use palmistry_math::number::{rational_to_f64, round_to_decimal};
@@ -60,26 +61,28 @@ fn has_decimals(value: f64) -> bool {
 
 /// Standard deviations as a table.
 pub(super) fn deviations_text(found: &StandardDeviations, out: &mut String) {
-    let _ = writeln!(
+    prose(
+        &format!(
+            "standard deviation of each state, normalised by its prior one (the spread over the box); median and worst of {} \
+             states, each Lie derivative measured up to its own spread:",
+            found.states
+        ),
         out,
-        "how well each state is seen, computed at {} states: its standard deviation, in parts of its spread over the box, \
-         where each word that was needed is known up to its own spread",
-        found.states
     );
     let width = found.list.iter().map(|row| row.state.chars().count()).max().unwrap_or(0).max(5);
-    let _ = writeln!(out, "  {:<width$}  {:>10}  {:>10}  {:>10}", "state", "spread", "median", "worst");
+    let _ = writeln!(out, "  {:<width$}  {:>10}  {:>12}  {:>12}", "state", "prior", "median", "worst");
     for row in &found.list {
-        // what doubles cannot tell of a state that is seen is not that it is not
-        let infinite = if row.is_seen { "unknown" } else { "not seen" };
+        // of an observable state whose deviation doubles cannot compute it is not said that it is unobservable
+        let infinite = if row.is_seen { "unknown" } else { "unobservable" };
         let deviation = |value: f64| if value.is_finite() { number_text(value) } else { infinite.to_owned() };
         let remark = match (row.infinite, row.median >= NEARLY_INVISIBLE) {
-            (0, true) => "  nearly invisible".to_owned(),
+            (0, true) => "  nearly unobservable".to_owned(),
             (0, false) => String::new(),
             (count, _) if count == found.states => String::new(),
             (count, _) => format!("  {infinite} at {count} of them"),
         };
         let line = format!(
-            "  {:<width$}  {:>10}  {:>10}  {:>10}{remark}",
+            "  {:<width$}  {:>10}  {:>12}  {:>12}{remark}",
             row.state,
             number_text(row.spread),
             deviation(row.median),
@@ -89,7 +92,7 @@ pub(super) fn deviations_text(found: &StandardDeviations, out: &mut String) {
     }
     if let Some(least) = &found.least {
         let (state, deviation) = (&least.state, deviation_text(found, least));
-        let _ = writeln!(out, "  least observable: {state}, {deviation}, at {}", place_text(&least.at));
+        item(&format!("least observable: {state}, {deviation}, at {}", place_text(&least.at)), out);
     }
 }
 
@@ -99,7 +102,7 @@ pub(crate) fn deviation_text(found: &StandardDeviations, least: &LeastObservable
     match (least.deviation.is_finite(), is_seen) {
         (true, _) => number_text(least.deviation),
         (false, true) => "unknown".to_owned(),
-        (false, false) => "not seen".to_owned(),
+        (false, false) => "unobservable".to_owned(),
     }
 }
 

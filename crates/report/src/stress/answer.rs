@@ -290,7 +290,7 @@ fn conditioning_text(states: &str, found: &Conditioning, out: &mut String) {
 pub fn stress_text(studies: &[StressStudy]) -> String {
     let mut out = String::from(
         "Lines: the distance at which a way first reports a wrong rank (w), has lost more than half of an entry's\n\
-         digits (d), says that it cannot tell (?), refuses and names why (!), as a range over the states from which\n\
+         digits (d), says that it cannot decide (?), refuses and names why (!), as a range over the states from which\n\
          lines go (at how many of them, where not at all); '-' none of it down to 9e-16.\n\
          On the set: at how many of the states on the set itself the verdict is the exact rank there.\n\
          'always full' looks at nothing. numpy's rule: all rows, of length one and not equilibrated; what exceeds\n\

@@ -56,7 +56,7 @@ pub(super) fn strays(names: &[&str], answer: &Answer, whole: &WholeMotion) -> Ve
         let (off, found) = farthest(names, update, whole)?;
         let own = Seam::of_any_correlation(update.from, [&[0.0], &[0.0]], [&[off], &[1.0]])?;
         let why = format!(
-            "from {:.3} s {} is {off:.0} deviations from what all readings tell: this window met a false minimum",
+            "from {:.3} s {} is {off:.0} standard deviations from the batch estimate of all measurements: this window met a false minimum",
             update.from, found.name
         );
         Some((place, own, why))

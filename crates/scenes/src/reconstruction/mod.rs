@@ -1,4 +1,4 @@
-//! The shape that an experiment tells: from what an observer believes sample by sample, or from all readings at once.
+//! The shape that an experiment tells: from what an observer believes sample by sample, or batch estimate of all measurements.
 //!
 //! Between two flat palms shape and motion follow from one law and all readings (`whole`): that has no window, no pole and no sum of errors, and its
 //! band is that of the readings. Where this does not apply, or does not explain the readings, the shape is made of what the observer shown
@@ -103,7 +103,7 @@ impl Experiment {
         track::touch_track(self, answer)
     }
 
-    /// Shape and motion from all readings at once, where the palms are flat and a body between them explains the readings; else what is known of why not.
+    /// Shape and motion batch estimate of all measurements, where the palms are flat and a body between them explains the readings; else what is known of why not.
     fn whole_record(
         &self,
         track: &TouchTrack,

@@ -158,7 +158,7 @@ fn left_height(grid: &[Option<Closed>], i: usize, by: isize) -> Option<f64> {
     beside.or(grid[i].as_ref()).map(|at| at.height)
 }
 
-/// Shape and motion from the readings alone, nothing known at the start: several constants by closure, all readings at once from each, and what is left of the readings
+/// Shape and motion from the readings alone, nothing known at the start: several constants by closure, all readings at once from each, and the residuals of the readings
 /// as the judge. None where no start can be followed; whether the readings are explained says [`SlowShape::explains`].
 pub fn from_nothing(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
     from_nothing_within(readings, Orders::CHOSEN, interrupt)

@@ -1,4 +1,4 @@
-//! Shape and motion from all readings at once: the support function whose equilibria explain the contacts best.
+//! Shape and motion batch estimate of all measurements: the support function whose equilibria explain the contacts best.
 //!
 //! At palm angles that are known the body lies where `G = A r_1' + B r_2'` vanishes and grows; which of these poses, says the one in which it lay at the last step of
 //! the search. From there the contacts follow, and their derivatives by the coefficients `c` are exact: by the pose's, `d phi0/dc = (A b_1' + B b_2')/(A r_1'' + B r_2'')`

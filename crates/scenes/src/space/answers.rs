@@ -10,7 +10,7 @@ pub enum SpaceVerdict {
     Fits,
     /// The best that was found does not explain them.
     DoesNotFit,
-    /// The readings do not tell it: a bound is as large as what is sought, what seems to be told is mostly noise, or nothing moves.
+    /// The readings do not tell it: a bound is as large as what is estimated, what seems to be told is mostly noise, or nothing moves.
     Blind,
     /// Another state, far away by the bound, explains them as well.
     Ambiguous,

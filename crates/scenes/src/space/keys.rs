@@ -181,7 +181,7 @@ fn checked(keys: Keys, places: &Places, name: &str, text: &str) -> Result<SpaceS
         }
     }
     if keys.gravity == [0.0; 3] {
-        let help = "give the acceleration in m/s^2, as in [0, 0, -9.81]; by the weight the mass is told from the inertia of the palms' motors";
+        let help = "give the acceleration in m/s^2, as in [0, 0, -9.81]; by the weight the mass is distinguished from the inertia of the palms' motors";
         return Err(wrong.at("gravity", "nothing holds a body on its palms", help));
     }
     let geometry: [SpatialPalm; 3] = std::array::from_fn(|i| SpatialPalm {
@@ -242,7 +242,7 @@ fn checked(keys: Keys, places: &Places, name: &str, text: &str) -> Result<SpaceS
         (None, None) => None,
         (Some(_), Some(_)) => {
             let help = "give prescribed = [..] or torques = [..], for all three palms";
-            return Err(wrong.at("palms", "the palms' motion is told twice", help));
+            return Err(wrong.at("palms", "the palms' motion is given twice", help));
         }
     };
     let body = keys.body.map(|body| read_body(body, places)).transpose()?;
@@ -309,12 +309,12 @@ fn checked_observer(keys: &ObserverKeys, wrong: &Wrong) -> Result<SpaceObserver,
         );
         return Err(wrong.at(
             "observer.window",
-            format!("a window of {window} samples tells no state"),
+            format!("a window of {window} samples determines no state"),
             &help,
         ));
     }
     if let Some(degree) = keys.degree.filter(|degree| *degree > MOST_DEGREE) {
-        let help = format!("let it be no more than {MOST_DEGREE}, or leave it to the readings");
+        let help = format!("let it be no more than {MOST_DEGREE}, or leave it to the measurements");
         return Err(wrong.at("observer.degree", format!("the degree is {degree}"), &help));
     }
     wrong.positive("observer.least_radius", keys.least_radius)?;

@@ -33,7 +33,7 @@ pub fn observe_stream(
     tell: &mut dyn FnMut(&WindowReport<'_>) -> bool,
 ) -> Result<StreamEnd, SceneError> {
     if scene.observer.whole {
-        let help = "leave 'whole' out, or hold the readings in a file first";
+        let help = "leave 'whole' out, or put the measurements into a file first";
         let message = "a stream has no end, and so no whole";
         return Err(scene.error_at("observer.whole", message, "asked for here", help));
     }
@@ -42,7 +42,7 @@ pub fn observe_stream(
     let delayed = known_sensors(&scene.observer.known).into_iter().find(|(_, known)| known.delay > 0.0);
     if let Some((name, _)) = delayed {
         let message = format!("the delay of '{name}' cannot be undone in a stream");
-        let help = "hold the readings in a file first";
+        let help = "put the measurements into a file first";
         return Err(scene.error_at("observer.known", message, "known here", help));
     }
     let rows = RowStream::new(ground.names.clone(), ground.needed(), ground.fault_rules());
@@ -66,7 +66,7 @@ pub fn observe_stream(
                 Err(scene.error_at(
                     "data",
                     format!("{STREAM} has one row"),
-                    "the readings of this scene",
+                    "the measurements of this scene",
                     help,
                 ))
             }

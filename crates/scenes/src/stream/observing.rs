@@ -161,7 +161,7 @@ impl<'a> Observing<'a> {
         };
         let columns = self.names.iter().enumerate().map(column).collect();
         let signals = Signals::new(times, columns).map_err(|error| {
-            self.experiment.scene.error_at("data", error.to_string(), "these readings", "")
+            self.experiment.scene.error_at("data", error.to_string(), "these measurements", "")
         })?;
         let first = shown - from;
         Ok(signals.showing(first..first + again + count))

@@ -106,7 +106,7 @@ impl<'a> CurvatureTrials<'a> {
     ) -> Result<CurvatureTrials<'a>, SceneError> {
         let names = experiment.names();
         if experiment.scene.simulated.is_none() || !COMPARED.iter().all(|name| names.contains(name)) {
-            let message = "the map compares what palms tell of r1 and r2";
+            let message = "the map compares how well palms determine r1 and r2";
             let help = "simulate a body between two palms, and let 'estimate' contain both radii";
             return Err(experiment.scene.error_at("study.curvature", message, "here", help));
         }

@@ -70,7 +70,7 @@ pub enum StudyMergeError {
     )]
     OtherQuestion(String),
     #[error(
-        "{0} was made from other readings: by another build of this program, or on a machine whose arithmetic rounds otherwise"
+        "{0} was made from other measurements: by another build of this program, or on a machine whose arithmetic rounds otherwise"
     )]
     OtherReadings(String),
     #[error("no part has the trials {} to {}", .0.start, .0.end.saturating_sub(1))]

@@ -35,7 +35,7 @@ impl Unguided {
             let help = "give a first guess, or a longer window";
             refuse(
                 scene,
-                "no body between the palms explains the readings of the first window".to_owned(),
+                "no body between the palms explains the measurements of the first window".to_owned(),
                 help,
             )
         })?;

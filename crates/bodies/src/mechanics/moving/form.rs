@@ -98,7 +98,7 @@ pub enum FormError {
     CentreOutside { x: f64, y: f64, angle: f64, support: f64 },
     /// The sign could not be decided in double precision.
     #[error(
-        "cannot tell whether {what} is positive near {angle:.4} rad: it is {value:.1e} there, too close to zero"
+        "cannot decide whether {what} is positive near {angle:.4} rad: it is {value:.1e} there, too close to zero"
     )]
     TooClose { what: &'static str, angle: f64, value: f64 },
     #[error("the area or perimeter did not settle: the last two approximations differ by a relative {0:.1e}")]

@@ -52,7 +52,7 @@ struct Carried<'a> {
 pub fn follow_resting(scene: &MovingScene, times: &[f64]) -> Result<Trajectory, SceneError> {
     let last = checked_times(times)?;
     let Drive::Prescribed(courses) = &scene.drive else {
-        return Err(SceneError::NotSlow("the palms' angles have to be told, not their torques"));
+        return Err(SceneError::NotSlow("the palms' angles have to be given, not their torques"));
     };
     if scene.palms.iter().any(|palm| *palm != Palm::Flat) {
         return Err(SceneError::NotSlow("both palms have to be flat"));

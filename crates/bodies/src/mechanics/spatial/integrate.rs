@@ -117,7 +117,7 @@ pub(super) fn steps(
         }
         let until = if most < end - here.time { here.time + most } else { end };
         if until <= here.time {
-            return (all, Some("the body turns too fast for its time to be told".to_owned()));
+            return (all, Some("the body turns too fast for its time to be computed".to_owned()));
         }
         let (found, failure) = piece(scene, here, until, longest);
         let paid = budget.steps(1 + found.len());

@@ -70,9 +70,9 @@ pub enum SpatialSceneError {
          other two together"
     )]
     Inertia,
-    /// A sphere in which the body cannot be seen to roll.
+    /// A sphere in which the body cannot be shown to roll.
     #[error(
-        "palm {palm} is hollow with a radius of {radius} m, in which the body cannot be seen to roll: where its outward normal is \
+        "palm {palm} is hollow with a radius of {radius} m, in which the body cannot be shown to roll: where its outward normal is \
          ({x:.4}, {y:.4}, {z:.4}) it may have a radius of curvature of {own:.4} m; a hollow palm has to be flatter than all of the \
          body, its curvature be above {least:.4} 1/m"
     )]

@@ -21,13 +21,13 @@ pub enum SolidFormError {
     Nothing,
     /// A radius of curvature is not positive, or cannot be seen to be.
     #[error(
-        "the body cannot be seen to be strictly convex: where the outward normal is ({x:.4}, {y:.4}, {z:.4}) the least radius of \
+        "the body cannot be shown to be strictly convex: where the outward normal is ({x:.4}, {y:.4}, {z:.4}) the least radius of \
          curvature is no more than {radius:.4e} m for certain; make the harmonics smaller"
     )]
     NotConvex { x: f64, y: f64, z: f64, radius: f64 },
     /// The centre of mass lies outside, or cannot be seen to lie inside.
     #[error(
-        "the centre of mass cannot be seen to lie inside the body: in the direction ({x:.4}, {y:.4}, {z:.4}) it reaches \
+        "the centre of mass cannot be shown to lie inside the body: in the direction ({x:.4}, {y:.4}, {z:.4}) it reaches \
          {extent:.4e} m from it"
     )]
     CentreOutside { x: f64, y: f64, z: f64, extent: f64 },

@@ -49,7 +49,7 @@ use test::Tested;
 /// What the relations between functions show.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Related {
-    /// All expressions are zero wherever they exist and the assumptions hold, but for an error of probability below
+    /// All expressions are zero wherever they exist and the assumptions hold, error probability below
     /// `2^log2_error`.
     Zero {
         /// Minus infinity where nothing had to be tested.

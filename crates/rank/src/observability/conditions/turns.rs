@@ -30,7 +30,7 @@ impl Branch {
             if !turns_do_not_matter(system, &before, *angle) {
                 let name = system.symbol_name(*angle);
                 return Err(format!(
-                    "the condition fixes '{name}' up to whole turns, and the statement tells them apart"
+                    "the condition fixes '{name}' up to whole turns, and the statement distinguishes them"
                 ));
             }
         }

@@ -70,7 +70,7 @@ pub struct SolutionsOf {
     pub local_error: f64,
     /// What was found.
     pub solutions: Solutions,
-    /// No more values than these, but for an error of probability below two to this power; nothing where there is no bound below `2^-100`.
+    /// No more values than these, error probability below two to this power; nothing where there is no bound below `2^-100`.
     pub at_most: Option<(usize, f64)>,
     /// As many values at least, and a map of the unknowns that shows it: proved, without an error.
     pub at_least: Option<(usize, String)>,

@@ -22,7 +22,7 @@ pub(super) struct Equations {
     /// The states, and among them the unknowns, by their places.
     pub states: usize,
     pub columns: Vec<usize>,
-    /// The unknowns and what is known at the beginning: the rows of these are what rests when it has stopped growing.
+    /// The unknowns and known initial conditions: the rows of these are what rests when it has stopped growing.
     pub closed: Vec<usize>,
     pub outputs: usize,
     /// How many functions are asked for besides: their differentials come behind those of the outputs.

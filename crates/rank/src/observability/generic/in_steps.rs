@@ -64,7 +64,7 @@ pub(super) fn answer_in_steps(
     if bounds.is_ok() {
         answer.closed_at_most = best.0;
         if closed.len() > answer.dimension {
-            // what is known at the beginning counts as unknown
+            // what has a known initial condition counts as unknown
             let mut all = system.clone();
             all.known.retain(|symbol| !closed.contains(symbol));
             answer.closed_at_most = match answer_in_steps(&all, conditions, ceiling, &[]).0 {

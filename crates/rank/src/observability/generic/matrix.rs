@@ -11,7 +11,7 @@ use rand::Rng;
 /// The rank of a matrix outside a thin set, and how it is known.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GenericRank {
-    /// The rank; it is certainly no less, and no more but for an error of probability below `2^log2_error`.
+    /// The rank; it is certainly no less, and no more error probability below `2^log2_error`.
     Rank {
         /// The rank.
         rank: usize,

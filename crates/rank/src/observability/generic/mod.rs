@@ -57,9 +57,9 @@ pub struct GenericAnswer {
     pub dimension: usize,
     /// The rank is no less: a minor was found that does not vanish.
     pub at_least: usize,
-    /// Nor more, but for an error of probability below `2^log2_error`.
+    /// Nor more, error probability below `2^log2_error`.
     pub at_most: usize,
-    /// The same bound where what is known at the beginning counts as unknown.
+    /// The same bound where known initial conditions counts as unknown.
     pub(crate) closed_at_most: usize,
     /// Minus infinity where the rank is full and there is nothing to err about.
     pub log2_error: f64,

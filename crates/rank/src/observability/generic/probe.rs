@@ -24,7 +24,7 @@ pub(super) struct Evaluated {
     pub echelon: Echelon,
     /// The differentials of the functions that are asked for, by unknowns.
     asked: Vec<Vec<u64>>,
-    /// The rank where what is known at the beginning counts as unknown.
+    /// The rank where known initial conditions counts as unknown.
     pub closed: usize,
     pub order: usize,
 }

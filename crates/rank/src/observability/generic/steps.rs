@@ -44,7 +44,7 @@ pub(super) struct Steps {
     asked: usize,
     /// What the bound of degrees is taken from.
     measured: Program,
-    /// All that moves but known signals, and which of it is unknown at the beginning.
+    /// All that moves but known signals, and which of it has an unknown initial condition.
     closed: usize,
     columns: Vec<usize>,
     /// How many steps are taken.

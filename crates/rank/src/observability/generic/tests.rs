@@ -127,7 +127,7 @@ fn long_sums_are_reduced_in_time() {
     }
 }
 
-/// By hand, see `tests/claims/inputs.rs`: signals that are known have no column, and what is known at the beginning alone has
+/// By hand, see `tests/claims/inputs.rs`: signals that are known have no column, and a known initial condition alone has
 /// none and yet leads to what is not.
 #[test]
 fn known_coordinates_have_no_column() {

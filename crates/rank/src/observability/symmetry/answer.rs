@@ -1,4 +1,4 @@
-//! What was found of the unseen directions and of the functions that are seen.
+//! What was found of the unobservable directions and of the functions that are seen.
 
 use palmistry_lang::Assignment;
 use palmistry_math::expression::{NodeId, Symbol};
@@ -39,11 +39,11 @@ pub struct SeenFunction {
     pub(super) factors: Vec<(NodeId, i32)>,
 }
 
-/// States that no unseen direction couples with others.
+/// States that no unobservable direction couples with others.
 #[derive(Clone, Debug)]
 pub(super) struct UnseenBlock {
     pub states: Vec<Symbol>,
-    /// How many unseen directions there are among them.
+    /// How many unobservable directions there are among them.
     pub unseen: usize,
     /// The functions of these states, among all functions.
     pub functions: Range<usize>,
@@ -54,7 +54,7 @@ pub(super) struct UnseenBlock {
 pub struct UnseenMotions {
     /// Independent fields, at almost all states.
     pub fields: Vec<UnseenField>,
-    /// How many further unseen directions there are, of which no field was found.
+    /// How many further unobservable directions there are, of which no field was found.
     pub fields_missing: usize,
     /// The states that are seen by themselves, in their order.
     pub seen: Vec<Symbol>,

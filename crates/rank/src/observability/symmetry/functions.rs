@@ -55,7 +55,7 @@ struct Search<'a> {
     cut_off: bool,
 }
 
-/// Functions of one block, as many as its columns less the unseen directions where all are found.
+/// Functions of one block, as many as its columns less the unobservable directions where all are found.
 pub(super) fn functions_of_block(
     source: &KernelSource,
     block: &Block,

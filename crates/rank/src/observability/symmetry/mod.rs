@@ -65,7 +65,7 @@ pub fn unseen_motions(
 
 /// Lie derivatives with longer texts are no functions that anybody reads.
 const LONGEST_TEXT: usize = 160;
-/// How many points are looked at for the number of unseen directions.
+/// How many points are looked at for the number of unobservable directions.
 const POINTS: usize = 3;
 
 struct Attempt {
@@ -190,7 +190,7 @@ impl Attempt {
             for function in found.functions {
                 let factors = factor_nodes(system, source, &function);
                 let value = product(system, &factors);
-                // that all unseen directions leave it as it is puts its differential into the codistribution
+                // that all unobservable directions leave it as it is puts its differential into the codistribution
                 let proof = match self.is_complete() && self.found.settles_the_rank {
                     true => is_unchanged(system, motion, &self.vectors, value, rng),
                     false => None,
@@ -226,7 +226,7 @@ impl Attempt {
         if self.found.functions_missing == 0 {
             return;
         }
-        // a part of a rate or an output that no field changes is seen, if there are no other unseen directions
+        // a part of a rate or an output that no field changes is seen, if there are no other unobservable directions
         let mut candidates: Vec<(NodeId, String, Option<f64>)> = Vec::new();
         if self.is_complete() && self.found.settles_the_rank {
             let fields_err = together(self.found.fields.iter().map(|field| field.log2_error));

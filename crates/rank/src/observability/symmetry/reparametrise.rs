@@ -26,7 +26,7 @@ pub enum NotReparametrised {
     },
     /// The coordinates could not be solved for.
     #[error(
-        "the states could not be expressed by what is seen, with as many of them held at 0 or 1 as are not seen"
+        "the states could not be expressed by observable functions, with as many of them held at 0 or 1 as are unobservable"
     )]
     NoSection,
     /// Known signals would have to be declared in the new file as in the old one.
@@ -271,7 +271,7 @@ fn text(
     import: &str,
 ) -> String {
     let mut out = String::new();
-    let _ = writeln!(out, "system \"{}: what is seen of it\"\n", system.title);
+    let _ = writeln!(out, "system \"{}: its observable part\"\n", system.title);
     let _ = writeln!(out, "use original = \"{import}\"\n");
     let list = |wanted: &dyn Fn(&Coordinate) -> bool| -> Vec<&str> {
         coordinates.iter().filter(|c| wanted(c)).map(|c| c.name.as_str()).collect()
@@ -336,7 +336,7 @@ fn text(
     }
     let outputs = reduced.output_texts.join("; ");
     let _ = writeln!(out, "claim output: original.output = [{outputs}]{place}");
-    let _ = writeln!(out, "claim seen: rank = {}", coordinates.len());
+    let _ = writeln!(out, "claim observable: rank = {}", coordinates.len());
     out
 }
 
@@ -345,7 +345,7 @@ fn missing_text(fields: usize, functions: usize) -> String {
     let of = |count: usize, one: &str| {
         (count > 0).then(|| format!("{count} {one}{}", if count == 1 { "" } else { "s" }))
     };
-    let parts = [of(fields, "unseen direction"), of(functions, "function that is seen")];
+    let parts = [of(fields, "unobservable direction"), of(functions, "observable function")];
     parts
         .into_iter()
         .flatten()

@@ -1,4 +1,4 @@
-//! Which body of a library was read: the search for the motion of each, and what is left of its contacts.
+//! Which body of a library was read: the search for the motion of each, and the residuals of its contacts.
 
 mod search;
 

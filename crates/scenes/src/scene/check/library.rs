@@ -31,7 +31,7 @@ impl Checks<'_> {
         }
         if sensor.noise == 0.0 && sensor.resolution == 0.0 {
             let message =
-                "a body is recognised by what the errors of the readings explain, and none are stated";
+                "a body is recognised by what the errors of the measurements explain, and none are stated";
             return Err(self.wrong(library, message, "add noise or resolution under [sensor], in m"));
         }
         if let Some(name) = channels.keys().next() {

@@ -20,7 +20,7 @@ impl Checks<'_> {
         }
         self.names("observer.methods", &keys.methods, |method| format!("{method:?}"))?;
         if keys.estimate.is_empty() {
-            let help = "name the states that are sought";
+            let help = "name the states that are estimated";
             return Err(self.wrong("observer.estimate", "there is nothing to estimate", help));
         }
         self.names("observer.estimate", &keys.estimate, |name| format!("'{name}'"))?;
@@ -28,7 +28,7 @@ impl Checks<'_> {
             let place = format!("observer.known.{name}");
             self.finite(&place, *value)?;
             if keys.estimate.contains(name) {
-                let message = format!("'{name}' is both known and sought");
+                let message = format!("'{name}' is both known and estimated");
                 return Err(self.wrong_key(&place, message, "leave it out here or in 'estimate'"));
             }
         }
@@ -39,7 +39,7 @@ impl Checks<'_> {
             self.sought(&format!("observer.clamp[{index}]"), name, &keys.estimate)?;
         }
         if keys.clamp.len() == keys.estimate.len() {
-            let message = "all that is sought is clamped: the first window has nothing to change";
+            let message = "all estimated states are clamped: the first window has nothing to change";
             return Err(self.wrong("observer.clamp", message, "leave at least one state free"));
         }
         let samples = source.samples.unwrap_or(MOST_SAMPLES);
@@ -59,7 +59,11 @@ impl Checks<'_> {
         self.positive("observer.high_gain.gain", keys.high_gain.gain, "1/s")?;
         if !keys.modes.is_empty() && !keys.methods.first().is_some_and(|method| method.is_by_windows()) {
             let help = "let the first method be newton, trust-region or multiple-shooting";
-            return Err(self.wrong("observer.methods", "modes are told apart by windows", help));
+            return Err(self.wrong(
+                "observer.methods",
+                "modes are distinguished by moving-horizon windows",
+                help,
+            ));
         }
         if let Some(switch) = keys.switch {
             self.positive("observer.switch.condition", switch.condition, "")?;
@@ -109,7 +113,7 @@ impl Checks<'_> {
             return Err(self.wrong(
                 &place("estimate"),
                 "there is nothing to estimate",
-                "name the states that are sought",
+                "name the states that are estimated",
             ));
         }
         self.names(&place("estimate"), &keys.estimate, |name| format!("'{name}'"))?;
@@ -158,14 +162,14 @@ impl Checks<'_> {
         }
         if let Loss::Huber(corner) = keys.loss {
             if !(corner.is_finite() && corner >= 1.0) {
-                let help = "give the number of standard deviations from which on a reading counts less: 1 or more, 1.345 by custom";
+                let help = "give the number of standard deviations from which on a measurement counts less: 1 or more, 1.345 by custom";
                 return Err(self.wrong("observer.loss", format!("a corner at {corner} is none"), help));
             }
             if !source.is_noisy {
                 let help = "add noise = ... under [sensor]: the corner is a multiple of it";
                 return Err(self.wrong(
                     "observer.loss",
-                    "a robust loss needs the noise of the readings",
+                    "a robust loss needs the noise of the measurements",
                     help,
                 ));
             }
@@ -236,7 +240,7 @@ impl Checks<'_> {
         }
         let help = match palmistry_lang::nearest(name, estimate.iter().map(String::as_str)) {
             Some(near) => format!("perhaps you meant '{near}'"),
-            None => format!("what is sought: {}", estimate.join(", ")),
+            None => format!("estimated: {}", estimate.join(", ")),
         };
         Err(self.wrong_key(place, format!("'{name}' is not in 'estimate'"), help))
     }

@@ -40,7 +40,7 @@ impl Checks<'_> {
         self.positive("robot.radius_of_gyration", robot.radius_of_gyration, "m")?;
         self.finite("robot.speed", robot.speed)?;
         if robot.speed == 0.0 {
-            let help = "give it in m/s: a wheel that stands tells nothing of the ground under it";
+            let help = "give it in m/s: a wheel that stands still measures nothing of the ground under it";
             return Err(self.wrong("robot.speed", "wheel 1 stands", help));
         }
         self.finite("robot.start", robot.start)?;

@@ -108,7 +108,9 @@ impl Subject {
             (Refusal::DivisionByZero, Some(divisor)) => {
                 format!("division by zero: {} = 0", self.quote(divisor))
             }
-            (_, Some(divisor)) => format!("the divisor {} cannot be told from zero", self.quote(divisor)),
+            (_, Some(divisor)) => {
+                format!("the divisor {} cannot be distinguished from zero", self.quote(divisor))
+            }
             (refusal, None) => format!("{refusal}, in {}", self.quote(failure.node)),
         }
     }

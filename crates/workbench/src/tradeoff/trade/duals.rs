@@ -74,7 +74,7 @@ where
 {
     let plan = work.programs.plan.as_ref().map_err(Clone::clone)?;
     if plan.rows.iter().any(|(fields, _)| fields.len() > LONGEST) {
-        return Err(format!("there are types for words of up to {LONGEST} fields"));
+        return Err(format!("there are types for Lie derivatives up to order {LONGEST}"));
     }
     let programs = &work.programs.points;
     let levels = load::<Vector<T>>(programs).map_err(|refusal| refusal.to_string())?;

@@ -87,5 +87,5 @@ fn words_of(system: &mut System, entries: &[NodeId]) -> Result<Vec<Word>, String
         longest += 1;
     }
     let row = found.iter().position(Option::is_none).unwrap_or(0) + 1;
-    Err(format!("row {row} of '{OWN_ROWS}' is no differential of a word of up to {longest} fields"))
+    Err(format!("row {row} of '{OWN_ROWS}' is no differential of a Lie derivative up to order {longest}"))
 }
