@@ -11,7 +11,6 @@ use palmistry_rank::observability::{NamedCoordinate, Spectrum, Stop};
 use palmistry_rank::sweep::{BranchAnswer, Certainty, Digits, NoDigits, RankAnswer, SweepReport};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 fn histogram_json(histogram: &BTreeMap<usize, u64>) -> Value {
     histogram

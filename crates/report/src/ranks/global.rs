@@ -2,10 +2,11 @@
 
 use super::generic::unknown_verdict;
 use crate::claims::outcomes::error_bound;
+use crate::layout::item;
 use crate::names::{plain_number, values_json, values_text};
 use palmistry_io::foreign::shown;
 use palmistry_lang::UnknownKind;
-use palmistry_rank::observability::{SecondPoint, Solutions, SolutionsOf};
+use palmistry_rank::observability::{SecondPoint, Seen, Solutions, SolutionsOf};
 use palmistry_rank::sweep::GlobalAnswer;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -76,42 +77,45 @@ pub fn global_json(answer: &GlobalAnswer) -> Value {
     })
 }
 
-/// What is said of the number of values.
+/// The verdict on an unknown: the global one where the number of solutions is known, else the local one.
+fn strongest(of_it: &SolutionsOf) -> &'static str {
+    let kind = of_it.kind.unwrap_or(UnknownKind::State);
+    match (&of_it.solutions, kind) {
+        (Solutions::Finite(1), UnknownKind::Parameter) => "globally identifiable",
+        (Solutions::Finite(1), _) => "globally observable",
+        (Solutions::Infinite, _) => unknown_verdict(kind, Seen::No),
+        (Solutions::Finite(_), _) => unknown_verdict(kind, Seen::Yes),
+        (Solutions::Undecided(_), _) => unknown_verdict(kind, of_it.local),
+    }
+}
+
+/// What is known of the number of solutions, and how.
 fn in_words(of_it: &SolutionsOf, orders_are_open: bool) -> String {
-    let is_constant = of_it.kind == Some(UnknownKind::Parameter);
     match &of_it.solutions {
         Solutions::Undecided(why) => match &of_it.at_least {
             Some((least, map)) => {
                 format!("at least {least} solutions: proved, by {map}; how many is undecided: {why}")
             }
-            None => format!("undecided: {why}"),
+            None => format!("globally undecided: {why}"),
         },
         Solutions::Infinite => "infinitely many solutions: proved".to_owned(),
-        Solutions::Finite(1) => {
-            let word = if is_constant { "globally identifiable" } else { "globally observable" };
-            match of_it.at_most {
-                Some((1, log2_error)) => {
-                    format!("{word}: proved, error probability below {}", error_bound(log2_error))
-                }
-                _ => format!("{word}: computed"),
+        Solutions::Finite(1) => match of_it.at_most {
+            Some((1, log2_error)) => {
+                format!("1 solution: proved, error probability below {}", error_bound(log2_error))
             }
-        }
+            _ => "1 solution: computed".to_owned(),
+        },
         Solutions::Finite(count) => {
             let proved = of_it.is_proved();
-            let mut text = format!(
-                "{count} solutions over the complex numbers: {}",
-                if proved { "proved" } else { "computed" }
-            );
+            let how = if proved { "proved" } else { "computed" };
+            let mut text = format!("{count} solutions over the complex numbers: {how}");
             match &of_it.at_least {
                 Some((least, map)) if *least < *count => {
                     let _ = write!(text, "; at least {least} that are real: proved, by {map}");
                 }
                 Some((_, map)) => {
-                    let _ = write!(
-                        text,
-                        "{}, by {map}",
-                        if proved { "" } else { "; no fewer, and real: proved" }
-                    );
+                    let rest = if proved { "" } else { "; no fewer, and real: proved" };
+                    let _ = write!(text, "{rest}, by {map}");
                 }
                 None => {}
             }
@@ -136,18 +140,14 @@ pub fn global_text(answer: &GlobalAnswer) -> String {
     if !answer.known.is_empty() {
         let _ = writeln!(out, "known: {}", answer.known.join(", "));
     }
-    let _ = writeln!(out, "solutions: how many values of each unknown give the same outputs, generically");
+    let _ = writeln!(out, "how many values of each unknown give the same outputs, generically");
     let width = |of: &dyn Fn(&SolutionsOf) -> usize| found.unknowns.iter().map(of).max().unwrap_or(0);
-    let local = |of_it: &SolutionsOf| unknown_verdict(of_it.kind.unwrap_or(UnknownKind::State), of_it.local);
-    let (names, locals) = (width(&|of_it| of_it.name.chars().count()), width(&|of_it| local(of_it).len()));
+    let names = width(&|of_it| of_it.name.chars().count());
+    let verdicts = width(&|of_it| strongest(of_it).len());
     for of_it in &found.unknowns {
-        let _ = writeln!(
-            out,
-            "  {:<names$}  {:<locals$}  {}",
-            of_it.name,
-            local(of_it),
-            in_words(of_it, found.orders_are_open)
-        );
+        let (name, verdict) = (&of_it.name, strongest(of_it));
+        let rest = in_words(of_it, found.orders_are_open);
+        item(&format!("{name:<names$}  {verdict:<verdicts$}  {rest}"), &mut out);
     }
     if let Some(second) = &found.second {
         let _ = writeln!(

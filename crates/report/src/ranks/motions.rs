@@ -65,7 +65,7 @@ pub(super) fn motions_text(found: &UnseenMotions, sampled: bool, out: &mut Strin
     let scope = if found.for_all_parameters { ", for all parameter values" } else { "" };
     let degree = if found.cut_off { "; higher degrees have too many coefficients to be tried" } else { "" };
     if !found.functions.is_empty() || found.functions_missing > 0 {
-        let _ = writeln!(out, "identifiable combinations (functions of unobservable unknowns){scope}:");
+        let _ = writeln!(out, "identifiable functions of the unobservable unknowns{scope}:");
     }
     for function in &found.functions {
         item(&format!("{}  (proved, {})", function.text, certainty(function.log2_error)), out);
@@ -75,7 +75,7 @@ pub(super) fn motions_text(found: &UnseenMotions, sampled: bool, out: &mut Strin
         item(&format!("{more}, not found in low degree{degree}"), out);
     }
     let directions = if found.directions() == 1 { "direction" } else { "directions" };
-    let _ = writeln!(out, "unobservable {directions}, generically{scope}:");
+    let _ = writeln!(out, "unobservable {directions}{scope}:");
     for field in &found.fields {
         item(&format!("{}  (proved, {})", unseen_field_text(field), certainty(field.log2_error)), out);
     }
