@@ -3,6 +3,7 @@
 import os
 import re
 import stat
+import unicodedata
 from collections import defaultdict
 from functools import cache, reduce
 from operator import add, attrgetter, neg, sub
@@ -10,6 +11,13 @@ from operator import add, attrgetter, neg, sub
 from .graph import Map, call, derivation, number, put_in, refuse, spend, symbol
 from .proof_parser import HOLDS, NAME, Parser, texts, without_comments
 
+# what a name may be written with, by the names of characters: accents are no part of it
+LETTER = re.compile(r"GREEK (?:(CAPITAL|SMALL) LETTER (?:FINAL )?|LUNATE )?(\w+)(?: SYMBOL)?")
+GREEK = {chr(code): found for code in range(0x391, 0x3f6) if code != 0x3f2 and (found := LETTER.fullmatch(unicodedata.name(chr(code), "")))}
+GREEK = {x: (found[2].capitalize() if found[1] == "CAPITAL" else found[2].lower()).replace("amda", "ambda") for x, found in GREEK.items()}
+GREEK = {x: name for x, name in GREEK.items() if name.lower() in
+         "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi chi psi omega".split()}
+GREEK |= {"\u00b5": "mu", "\u2126": "Omega", "\u2206": "Delta"}
 ENTRY = re.compile(r"^[ \t]*(?=(?:system|use|state|param|angle|known|unknown|initial|experiments|let|drift|input|field"
                    r"|output|sample|claim|erratum|damaged|scan|convention|loose|definition|undecided|set|pole|map|line"
                    r"|reduction)\b)", re.M)
@@ -107,6 +115,8 @@ class System:
         whole = read_text(path, LARGEST)
         spend(READ + len(whole) // BYTES)
         text = re.sub(r'"[^"]*"|#[^\n]*', lambda x: " ".join(x[0].split()) * (x[0][0] == '"'), whole)
+        # a name may be written with Greek letters; a text in quotation marks is no name
+        text = re.sub(r'"[^"]*"|[^\x00-\x7f]', lambda x: GREEK.get(x[0], x[0]), text)
         self.digest, self.names, self.claims = digest(whole) if depth == 0 else "", defaultdict(list), {}
         self.lets, self.rates, self.known = {}, {}, {}
         self.functions = {**FUNCTIONS, "d": self.differentials, "bracket": self.bracket}

@@ -18,6 +18,7 @@ mod inputs;
 mod language;
 mod lie_derivatives;
 mod misprints;
+mod mistakes;
 mod mutated_verdicts;
 mod mutation;
 mod nonrational;

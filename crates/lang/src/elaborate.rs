@@ -12,6 +12,22 @@ use palmistry_math::number::Function;
 /// A graph with more nodes than this is no longer something a person wrote down.
 pub(super) const LARGEST_GRAPH: usize = 4_000_000;
 
+/// What other languages call functions of this one.
+const OTHER_NAMES: [(&str, &str); 12] = [
+    ("ln", "log"),
+    ("arcsin", "asin"),
+    ("arccos", "acos"),
+    ("arctan", "atan"),
+    ("arctan2", "atan2"),
+    ("sgn", "sign"),
+    ("signum", "sign"),
+    ("fabs", "abs"),
+    ("tg", "tan"),
+    ("ctg", "cot"),
+    ("cotan", "cot"),
+    ("cosec", "csc"),
+];
+
 /// The functions of the language beside [`Function::ALL`].
 pub(super) const OTHER_FUNCTIONS: [&str; 21] = [
     "tan",
@@ -220,9 +236,32 @@ impl System {
             Problem::new(span, format!("unknown {what} '{name}'"), "not declared above")
                 .because(Cause::Unknown(name.to_owned()))
         };
-        match near {
-            Some(near) => problem.help(format!("perhaps you meant '{near}'")),
-            None => problem,
+        match (self.habit(name, wanted), near) {
+            (Some(help), _) => problem.help(help),
+            (None, Some(near)) => problem.help(format!("perhaps you meant '{near}'")),
+            (None, None) if wanted == Wanted::Name => problem
+                .help(format!("declare it: 'state {name}', 'param {name}', 'let {name} = ...', or 'known {name}(t)' for a signal")),
+            (None, None) => problem,
+        }
+    }
+
+    /// What a name means in other languages, and how that is written here.
+    fn habit(&self, name: &str, wanted: Wanted) -> Option<String> {
+        let is_function = super::vocabulary::functions().any(|function| function == name);
+        let primes = name.trim_end_matches('\'');
+        match (name, wanted) {
+            ("e", Wanted::Name) => Some("Euler's number to a power is written exp(x)".to_owned()),
+            ("i" | "j", Wanted::Name) => Some(format!(
+                "'{name}' has no value: numbers are real, and an index has its range behind 'for'"
+            )),
+            ("inf" | "Inf" | "oo", Wanted::Name) => Some("it is called 'infinity'".to_owned()),
+            (_, Wanted::Name) if is_function => {
+                Some(format!("a function has its argument in brackets at once, as in {name}(x)^2"))
+            }
+            (_, Wanted::State) if primes != name => Some(format!(
+                "a second derivative needs a state of its own, as in {primes}' = v and v' = ..."
+            )),
+            _ => None,
         }
     }
 
@@ -320,9 +359,15 @@ impl System {
                 }
                 let known = super::vocabulary::functions();
                 let problem = Problem::new(span, format!("unknown function '{name}'"), "here");
-                Err(match nearest(name, known) {
-                    Some(near) => problem.help(format!("perhaps you meant '{near}'")),
-                    None => problem.help("a product is written with '*'"),
+                let other = OTHER_NAMES.into_iter().find(|(other, _)| *other == name);
+                let is_value = self.find_symbol(name).is_some() || self.definitions.contains_key(name);
+                Err(match (other, nearest(name, known)) {
+                    (Some((_, own)), _) => problem.help(format!("it is called '{own}'")),
+                    (None, _) if is_value => problem.help(format!(
+                        "'{name}' is no function: a product is written with '*', as in {name}*(...)"
+                    )),
+                    (None, Some(near)) => problem.help(format!("perhaps you meant '{near}'")),
+                    (None, None) => problem.help("a product is written with '*'"),
                 })
             }
         }

@@ -142,7 +142,10 @@ pub fn nearest<'a>(wanted: &str, known: impl IntoIterator<Item = &'a str>) -> Op
     known
         .into_iter()
         .map(|name| (strsim::damerau_levenshtein(wanted, name), name))
-        .filter(|(distance, _)| *distance <= 1 + wanted.chars().count() / 3)
+        // of a short name nothing else may be left
+        .filter(|(distance, _)| {
+            *distance <= 1 + wanted.chars().count() / 3 && *distance < wanted.chars().count()
+        })
         .min()
         .map(|(_, name)| name)
 }

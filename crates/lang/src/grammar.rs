@@ -465,7 +465,7 @@ pub(super) fn parse_entries(text: &str, most: usize) -> Entries {
                 _ => (start, begin, if behind { before.1 } else { begin }, expected),
             };
             let end = if damage.len() + 1 >= most { text.len() } else { after(begin) };
-            damage.push(Damage { expected, left_out: damaged..end });
+            damage.push(Damage { expected: expected.hinted(text), left_out: damaged..end });
             input.reset(&start);
             input.next_slice(end - begin);
         }

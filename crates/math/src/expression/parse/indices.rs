@@ -463,7 +463,7 @@ pub fn moved(input: &mut Text<'_>) -> Read<(Target, bool)> {
         }
         None => {
             blank(input)?;
-            cut_err(sign("'")).context("' after the state, as in r1' = ...").parse_next(input)?;
+            cut_err(sign("'")).context("' after the state, as in x' = ...").parse_next(input)?;
         }
     }
     Ok((found, false))

@@ -1,6 +1,7 @@
 //! Reading expressions. The parser combinators are winnow's; the error is ours, because it has to say what was
 //! expected, and where.
 
+mod hints;
 mod indices;
 mod tokens;
 
@@ -311,11 +312,15 @@ pub fn read_all<'a, T>(
     let mut input = Stateful { input: LocatingSlice::new(text), state: depth };
     let mut parser = preceded(blank, parser);
     let value = parser.parse_next(&mut input).map_err(|error| match error {
-        ErrMode::Backtrack(inner) | ErrMode::Cut(inner) => inner,
+        ErrMode::Backtrack(inner) | ErrMode::Cut(inner) => inner.hinted(text),
         ErrMode::Incomplete(_) => Expected { what: what.to_owned(), at: text.len(), help: None },
     })?;
     let at = input.current_token_start();
-    if at < text.len() { Err(Expected { what: what.to_owned(), at, help: None }) } else { Ok(value) }
+    if at < text.len() {
+        Err(Expected { what: what.to_owned(), at, help: None }.hinted(text))
+    } else {
+        Ok(value)
+    }
 }
 
 /// Reads one expression that is the whole text.

@@ -170,12 +170,55 @@ pub const SPECIAL: [&str; 30] = [
     "experiments",
 ];
 
+/// Greek letters with their names, which a name may be written with: `\u{3c6}1` is `phi1`. Variants of a letter are the letter.
+const GREEK: [(&str, &str); 24] = [
+    ("\u{3b1}\u{391}", "alpha"),
+    ("\u{3b2}\u{392}\u{3d0}", "beta"),
+    ("\u{3b3}\u{393}", "gamma"),
+    ("\u{3b4}\u{394}\u{2206}", "delta"),
+    ("\u{3b5}\u{395}\u{3f5}", "epsilon"),
+    ("\u{3b6}\u{396}", "zeta"),
+    ("\u{3b7}\u{397}", "eta"),
+    ("\u{3b8}\u{398}\u{3d1}", "theta"),
+    ("\u{3b9}\u{399}", "iota"),
+    ("\u{3ba}\u{39a}\u{3f0}", "kappa"),
+    ("\u{3bb}\u{39b}", "lambda"),
+    ("\u{3bc}\u{39c}\u{b5}", "mu"),
+    ("\u{3bd}\u{39d}", "nu"),
+    ("\u{3be}\u{39e}", "xi"),
+    ("\u{3bf}\u{39f}", "omicron"),
+    ("\u{3c0}\u{3a0}\u{3d6}", "pi"),
+    ("\u{3c1}\u{3a1}\u{3f1}", "rho"),
+    ("\u{3c3}\u{3a3}\u{3c2}", "sigma"),
+    ("\u{3c4}\u{3a4}", "tau"),
+    ("\u{3c5}\u{3a5}", "upsilon"),
+    ("\u{3c6}\u{3a6}\u{3d5}", "phi"),
+    ("\u{3c7}\u{3a7}", "chi"),
+    ("\u{3c8}\u{3a8}", "psi"),
+    ("\u{3c9}\u{3a9}\u{2126}", "omega"),
+];
+
+/// The name of a Greek letter, with a capital where the letter is one.
+fn greek_name(letter: char) -> Option<String> {
+    let (letters, name) = GREEK.into_iter().find(|(letters, _)| letters.contains(letter))?;
+    // of each letter the second is the capital
+    let is_capital = letters.chars().nth(1) == Some(letter) || matches!(letter, '\u{2206}' | '\u{2126}');
+    let capital = || format!("{}{}", name[..1].to_ascii_uppercase(), &name[1..]);
+    Some(if is_capital { capital() } else { name.to_owned() })
+}
+
+/// A name as the program calls it: Greek letters by their names.
+fn spelled(text: &str) -> String {
+    text.chars().map(|c| greek_name(c).unwrap_or_else(|| c.to_string())).collect()
+}
+
+fn is_letter(c: char) -> bool {
+    c.is_ascii_alphabetic() || c == '_' || greek_name(c).is_some()
+}
+
 /// Letters, digits and underscores, beginning with a letter.
 pub fn word<'a>(input: &mut Text<'a>) -> Read<(&'a str, Span)> {
-    (
-        one_of(|c: char| c.is_ascii_alphabetic() || c == '_'),
-        take_while(0.., |c: char| c.is_ascii_alphanumeric() || c == '_'),
-    )
+    (one_of(is_letter), take_while(0.., |c: char| c.is_ascii_digit() || is_letter(c)))
         .take()
         .with_span()
         .parse_next(input)
@@ -244,7 +287,7 @@ pub(super) fn bare_name(input: &mut Text<'_>) -> Read<Name> {
     }
     let mut whole = *input;
     whole.reset(&start);
-    let text = whole.input.as_ref()[..span.len()].to_owned();
+    let text = spelled(&whole.input.as_ref()[..span.len()]);
     Ok(Name { text, span })
 }
 

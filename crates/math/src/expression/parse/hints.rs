@@ -1,0 +1,136 @@
+//! What may help where a text does not read: what people write by the habits of other languages, and how it is written here.
+
+use super::tokens::{Expected, ends_a_line};
+use crate::number::Function;
+
+/// What is expected behind a state in a field.
+pub(super) const PRIME: &str = "' after the state";
+
+/// How it is written here, by what stands at the place and before it.
+const AT_THE_PLACE: [(&str, &str, &str); 27] = [
+    ("*", "*", "a power is written with '^', as in x^2"),
+    ("/", "/", "a comment begins with '#'"),
+    ("=", "=", "an equation has one '=', as in x = y"),
+    ("", ":=", "write '=' alone"),
+    ("", "|", "an absolute value is written abs(x), as in abs(omega)"),
+    ("", "\\", "write functions and Greek letters without the backslash, as in sin(phi)"),
+    ("", "{", "brackets are ( and ); a matrix is written [a, b; c, d]"),
+    ("", "%", "a comment begins with '#'"),
+    ("", "//", "a comment begins with '#'"),
+    ("", ";", "an entry ends with its line: leave ';' out"),
+    ("", "\u{201c}", "use straight quotation marks, as in \"text\""),
+    ("", "\u{201d}", "use straight quotation marks, as in \"text\""),
+    ("", "\u{201e}", "use straight quotation marks, as in \"text\""),
+    ("", "\u{ab}", "use straight quotation marks, as in \"text\""),
+    ("", "\u{2018}", "use the straight mark ', as in x' = y"),
+    ("", "\u{2019}", "use the straight mark ', as in x' = y"),
+    ("", "\u{2032}", "use the straight mark ', as in x' = y"),
+    ("", "\u{2212}", "use the minus sign of the keyboard, '-'"),
+    ("", "\u{2013}", "use the minus sign of the keyboard, '-'"),
+    ("", "\u{b7}", "a product is written with '*'"),
+    ("", "\u{d7}", "a product is written with '*'"),
+    ("", "\u{22c5}", "a product is written with '*'"),
+    ("", "\u{221a}", "a root is written sqrt(x)"),
+    ("", "\u{2264}", "write '<='"),
+    ("", "\u{2265}", "write '>='"),
+    ("", "\u{b2}", "a power is written with '^', as in x^2"),
+    ("", "\u{b3}", "a power is written with '^', as in x^3"),
+];
+
+/// What may help by what stands at the place.
+fn at_the_place(before: &str, rest: &str) -> Option<String> {
+    let line = before.rsplit(ends_a_line).next().unwrap_or_default();
+    let fixed = |(left, right, help): &(&str, &str, &str)| {
+        (line.ends_with(left) && rest.starts_with(right)).then(|| (*help).to_owned())
+    };
+    AT_THE_PLACE.iter().find_map(fixed).or_else(|| decimal_comma(line, rest)).or_else(|| of_words(line, rest))
+}
+
+fn decimal_comma(line: &str, rest: &str) -> Option<String> {
+    let digit = |c: char| c.is_ascii_digit();
+    let is_one = line.ends_with(digit) && rest.strip_prefix(',').is_some_and(|rest| rest.starts_with(digit));
+    is_one.then(|| "a decimal point is written '.', as in 0.5".to_owned())
+}
+
+/// By the words of the line as far as the place.
+fn of_words(line: &str, rest: &str) -> Option<String> {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let words: Vec<&str> = line.split(|c| !is_word(c)).filter(|word| !word.is_empty()).collect();
+    let at_word: String = rest.chars().take_while(|c| is_word(*c)).collect();
+    let has = |word: &str| words.contains(&word) || at_word == word;
+    if ["if", "then", "else"].into_iter().any(has) {
+        return Some(
+            "there is no 'if': write max(a, b), min(a, b), abs(a) or sign(a), or a claim for each case with 'where'"
+                .to_owned(),
+        );
+    }
+    if at_word == "at" || words.last() == Some(&"at") {
+        return Some(
+            "a condition of a claim is written with 'where', as in '... where omega = 0'".to_owned(),
+        );
+    }
+    if words.last() == Some(&"in") && rest.starts_with('(') {
+        return Some("a range has square brackets, as in x in [-1, 1]".to_owned());
+    }
+    None
+}
+
+/// What may help where the prime of a rate of change is missing: the name that should have one ends before the place.
+fn of_a_rate(before: &str, rest: &str) -> Option<String> {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let named = before.trim_end();
+    let begin = named
+        .rfind(|c| !is_word(c))
+        .map_or(0, |end| end + named[end..].chars().next().map_or(1, char::len_utf8));
+    let (name, line) = (&named[begin..], named[..begin].rsplit(ends_a_line).next().unwrap_or_default());
+    if let Some(left) =
+        line.trim_end().rsplit(|c: char| !is_word(c)).next().filter(|_| !line.trim().is_empty())
+    {
+        // behind an expression stands no state whose rate follows
+        let help = match Function::ALL.into_iter().any(|function| function.name() == left) {
+            true => format!("a function has its argument in brackets, as in {left}({name})"),
+            false if left.is_empty() => "a product is written with '*'".to_owned(),
+            false => format!("a product is written with '*', as in {left}*{name}"),
+        };
+        return of_words(line, name).or(Some(help));
+    }
+    let dotted = name.strip_suffix("_dot").or_else(|| name.strip_suffix("dot"));
+    let derived = match (name, rest) {
+        ("d", rest) => rest.strip_prefix('(').and_then(|rest| rest.split(')').next()),
+        (name, rest) if rest.starts_with("/dt") => name.strip_prefix('d'),
+        _ => None,
+    };
+    let state = dotted.or(derived).map(str::trim).filter(|state| !state.is_empty());
+    let state = state.or(rest.starts_with('=').then_some(name))?;
+    Some(format!("a rate of change is written with a prime, as in {state}' = ..."))
+}
+
+impl Expected {
+    /// With the advice for what people write by the habits of other languages, where the text has it at the place.
+    pub fn hinted(self, text: &str) -> Expected {
+        let Some((before, rest)) = text.split_at_checked(self.at) else { return self };
+        let rate = if self.what.starts_with(PRIME) { of_a_rate(before, rest) } else { None };
+        let help = at_the_place(before, rest).or(rate).or(self.help);
+        Expected { help, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Anything may stand at a place, and a place may be no boundary of characters.
+    #[test]
+    fn no_text_is_too_strange() {
+        let texts =
+            ["", "\u{3c6}", "d(", "  \u{2032}x", "x y", "x\u{85}y\u{2028}z", "# \u{201c}\nif", "in (", "1,2"];
+        for text in texts {
+            for at in 0..=text.len() + 2 {
+                for what in [PRIME, "a name"] {
+                    let expected = Expected { what: what.to_owned(), at, help: Some("kept".to_owned()) };
+                    assert!(expected.hinted(text).help.is_some(), "{text:?} at {at}");
+                }
+            }
+        }
+    }
+}

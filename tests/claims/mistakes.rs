@@ -1,0 +1,85 @@
+//! What people write by the habits of other languages: each mistake has an advice of its own.
+
+use palmistry::System;
+use std::path::Path;
+
+const RIGHT: &str = "system \"s\"\nstate phi, omega\nparam k = 2\nangle phi\ndrift f\n  phi' = omega\n  omega' = -k*sin(phi)\noutput phi\n";
+
+/// A text of the right file, what stands in its place, and words of the advice.
+const MISTAKES: [(&str, &str, &str); 46] = [
+    ("-k*sin", "-k sin", "a product is written with '*', as in k*sin"),
+    ("-k*sin", "-2 sin", "a product is written with '*', as in 2*sin"),
+    ("-k*sin", "-2k*sin", "a product is written with '*'"),
+    ("-k*sin(phi)", "-(k + 1)(k + 2)", "a product is written with '*'"),
+    ("-k*sin(phi)", "-k(phi + 1)", "'k' is no function: a product is written with '*', as in k*(...)"),
+    ("-k*sin(phi)", "-k*sin phi", "a function has its argument in brackets, as in sin(phi)"),
+    ("-k*sin(phi)", "-k*sin^2(phi)", "a function has its argument in brackets at once, as in sin(x)^2"),
+    ("phi' = omega", "phi = omega", "a rate of change is written with a prime, as in phi' = ..."),
+    ("omega' =", "omega_dot =", "a rate of change is written with a prime, as in omega' = ..."),
+    ("omega' =", "omegadot =", "a rate of change is written with a prime, as in omega' = ..."),
+    ("omega' =", "d(omega)/dt =", "a rate of change is written with a prime, as in omega' = ..."),
+    ("omega' =", "domega/dt =", "a rate of change is written with a prime, as in omega' = ..."),
+    ("omega' =", "omega' :=", "write '=' alone"),
+    ("omega' =", "omega' ==", "an equation has one '='"),
+    ("omega' =", "phi'' =", "a second derivative needs a state of its own, as in phi' = v"),
+    ("omega' =", "omega\u{2032} =", "use the straight mark '"),
+    ("omega' =", "omega\u{2019} =", "use the straight mark '"),
+    ("-k*sin(phi)", "if omega > 0 then 1 else 2", "there is no 'if'"),
+    ("-k*sin(phi)", "1 if omega > 0 else 2", "there is no 'if'"),
+    ("-k*sin(phi)", "-k**2*phi", "a power is written with '^'"),
+    ("-k*sin(phi)", "-k\u{b2}*phi", "a power is written with '^'"),
+    ("-k*sin(phi)", "-k*|omega|", "an absolute value is written abs(x)"),
+    ("-k*sin(phi)", "-k*\\sin(phi)", "without the backslash"),
+    ("-k*sin(phi)", "-\\frac{k}{2}", "without the backslash"),
+    ("-k*sin(phi)", "-k*sin(phi) // gravity", "a comment begins with '#'"),
+    ("-k*sin(phi)", "-k*sin(phi) % gravity", "a comment begins with '#'"),
+    ("-k*sin(phi)", "-k*sin(phi);", "an entry ends with its line"),
+    ("-k*sin(phi)", "-k*e^phi", "Euler's number to a power is written exp(x)"),
+    ("-k*sin(phi)", "-k*sin(phi) + u", "'known u(t)' for a signal"),
+    ("-k*sin(phi)", "-k*{sin(phi)}", "brackets are ( and )"),
+    ("-k*sin(phi)", "-0,5*phi", "a decimal point is written '.'"),
+    ("-k*sin(phi)", "\u{2212}k*sin(phi)", "use the minus sign of the keyboard"),
+    ("-k*sin(phi)", "-k\u{b7}sin(phi)", "a product is written with '*'"),
+    ("-k*sin(phi)", "-k\u{d7}phi", "a product is written with '*'"),
+    ("-k*sin(phi)", "-\u{221a}k", "a root is written sqrt(x)"),
+    ("sin(phi)", "ln(k)", "it is called 'log'"),
+    ("sin(phi)", "arctan(k)", "it is called 'atan'"),
+    ("sin(phi)", "sgn(omega)", "it is called 'sign'"),
+    ("sin(phi)", "sinn(phi)", "perhaps you meant 'sin'"),
+    ("\"s\"", "\u{201c}s\u{201d}", "straight quotation marks"),
+    ("output phi", "output phi\nclaim a: L(f, phi) == omega", "an equation has one '='"),
+    ("output phi", "output phi\nclaim a: L(f, phi) = 0 at omega = 0", "is written with 'where'"),
+    ("output phi", "output phi\nsample omega in (-1, 1)", "a range has square brackets"),
+    ("output phi", "output phi\nclaim a: k \u{2264} 2", "write '<='"),
+    ("output phi", "output phi\nclaim a: rank = infinty", "perhaps you meant 'infinity'"),
+    ("output phi", "outptu phi", "perhaps you meant 'output'"),
+];
+
+#[test]
+fn each_mistake_has_its_advice() {
+    assert!(System::parse("s.proof", RIGHT, Path::new("")).is_ok());
+    let mut wrong = Vec::new();
+    for (right, mistake, advice) in MISTAKES {
+        let text = RIGHT.replacen(right, mistake, 1);
+        assert_ne!(text, RIGHT, "{right}");
+        match System::parse("s.proof", &text, Path::new("")) {
+            Ok(_) => wrong.push(format!("{mistake}: is none")),
+            Err(error) if error.help.as_ref().is_some_and(|help| help.contains(advice)) => {}
+            Err(error) => wrong.push(format!("{mistake}: {}, {:?}", error.message, error.help)),
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Names may be written with Greek letters: they are the names of these, and the constant pi is one.
+#[test]
+fn greek_letters_are_read_as_their_names() {
+    let greek = RIGHT.replace("phi", "\u{3c6}").replace("omega", "\u{3c9}");
+    let claims = "claim a: L(f, \u{3c6}) = omega\nclaim b: sin(\u{3c0}) = 0\nlet \u{394}x1 = 2*phi\nclaim c: Deltax1 = 2*\u{3d5}\n";
+    let system = System::parse("s.proof", &format!("{greek}{claims}"), Path::new("")).unwrap();
+    assert_eq!(system.column_names(), ["phi", "omega"]);
+    let found = palmistry::decide_all(&system, 1, &false.into(), &|_| ());
+    assert!(found.len() == 3 && found.iter().all(|outcome| outcome.ok), "{found:?}");
+    let twice = System::parse("s.proof", "system \"s\" state phi, \u{3c6}", Path::new("")).unwrap_err();
+    assert!(twice.message.contains("phi"), "{twice}");
+}
