@@ -18,7 +18,7 @@ GREEK = {x: (found[2].capitalize() if found[1] == "CAPITAL" else found[2].lower(
 GREEK = {x: name for x, name in GREEK.items() if name.lower() in
          "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi chi psi omega".split()}
 GREEK |= {"\u00b5": "mu", "\u2126": "Omega", "\u2206": "Delta"}
-ENTRY = re.compile(r"^[ \t]*(?=(?:system|use|state|param|angle|known|unknown|initial|experiments|let|drift|input|field"
+ENTRY = re.compile(r"^[ \t]*(?=(?:system|use|state|param|angle|assume|known|unknown|initial|experiments|let|drift|input|field"
                    r"|output|sample|claim|erratum|damaged|scan|convention|loose|definition|undecided|set|pole|map|line"
                    r"|reduction)\b)", re.M)
 LARGEST, MOST_CLAIMS, MOST_NAMES = 16 << 20, 100_000, 2000  # bytes of a proof file; its entries; symbols of one kind
@@ -118,7 +118,7 @@ class System:
         # a name may be written with Greek letters; a text in quotation marks is no name
         text = re.sub(r'"[^"]*"|[^\x00-\x7f]', lambda x: GREEK.get(x[0], x[0]), text)
         self.digest, self.names, self.claims = digest(whole) if depth == 0 else "", defaultdict(list), {}
-        self.lets, self.rates, self.known = {}, {}, {}
+        self.lets, self.rates, self.known, self.assumed = {}, {}, {}, []
         self.functions = {**FUNCTIONS, "d": self.differentials, "bracket": self.bracket}
         found = ENTRY.split(text if re.search(r"^[ \t]*drift\b", text, re.M) else text + "\ndrift signals")
         if len(found) > MOST_CLAIMS:
@@ -138,6 +138,8 @@ class System:
                 name, *bodies = re.split(r"\b(\w+)'\s*=", rest)
                 self.rates[name.strip()] = kind, dict(zip(bodies[::2], bodies[1::2]))
                 self.names["moving"] += [name.strip()] * (kind != "field")
+            elif kind == "assume":
+                self.assumed.append(rest)
             elif kind == "output":
                 self.names["output"].append(re.sub(":[^,]*", "", rest))
             elif kind in ("claim", "erratum", "damaged", "scan", "convention", "loose"):
@@ -217,6 +219,7 @@ class System:
     def statement(self, text):
         """What a claim asks, of what, the answer, and the conditions."""
         self.parts, (claim, *where) = None, re.split(r"\bwhere\b", re.split(r"\b(?:everywhere|except|on)\b", text)[0])
+        where += self.assumed
         self.said = [claim, *where]
         conditions = [x for text in where for x in self.read(text)]
         if re.fullmatch(r"\s*rank\s*=\s*\d{1,4}\s*", claim):

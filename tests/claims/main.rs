@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod assumptions;
 mod bad_input;
 mod blocks;
 mod brackets;

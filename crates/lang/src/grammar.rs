@@ -330,7 +330,7 @@ fn remark_only(input: &mut Text<'_>) -> Read<Item> {
     Ok(Item::Claim(Box::new(ClaimSyntax { id, span, body, basis, follows: None, remark: None })))
 }
 
-const ENTRY: &str = "one of: system, use, state, param, angle, let, drift, input, field, output, sample, claim, erratum, \
+const ENTRY: &str = "one of: system, use, state, param, angle, assume, let, drift, input, field, output, sample, claim, erratum, \
                      damaged, scan, convention, loose, definition, undecided, set, pole, map, line, reduction, known, unknown, initial, experiments";
 
 fn item(input: &mut Text<'_>) -> Read<Vec<Item>> {
@@ -339,7 +339,10 @@ fn item(input: &mut Text<'_>) -> Read<Vec<Item>> {
         import,
         states,
         params,
-        preceded(keyword("angle"), names).map(Item::Angle),
+        alt((
+            preceded(keyword("angle"), names).map(Item::Angle),
+            preceded(keyword("assume"), conditions).map(Item::Assume),
+        )),
         field,
         alt((zero_outputs, outputs)),
         alt((sample, claim, faulty, remark_only, view, entry)),
@@ -348,8 +351,9 @@ fn item(input: &mut Text<'_>) -> Read<Vec<Item>> {
 }
 
 /// The words that begin an entry.
-pub(super) const ENTRIES: [&str; 28] = [
+pub(super) const ENTRIES: [&str; 29] = [
     "system",
+    "assume",
     "use",
     "state",
     "param",

@@ -8,6 +8,7 @@
 
 #![warn(missing_docs)]
 
+mod assume;
 mod comparable;
 mod components;
 mod declare;

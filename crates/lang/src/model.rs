@@ -8,7 +8,7 @@ use super::unknowns::Coordinates;
 use super::views::{LineView, MapView, NamedSet, ReductionTo};
 use super::written::{Insert, Mention, Place, Scope, Written, places_in_equation};
 use dashu::rational::RBig;
-use palmistry_math::expression::syntax::Span;
+use palmistry_math::expression::syntax::{Equation, Span};
 use palmistry_math::expression::{Derivation, Graph, Guard, NodeId, Symbol, gradient};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
 use std::path::PathBuf;
@@ -263,6 +263,8 @@ pub struct System {
     pub avoid: Vec<(String, NodeId)>,
     /// The claims, as syntax.
     pub claims: Vec<ClaimSyntax>,
+    /// Inequalities under which they are made.
+    pub(super) assumed: Vec<Equation>,
     /// Sets of states that deserve a look of their own, in the order of the file.
     pub sets: Vec<NamedSet>,
     /// Their titles.

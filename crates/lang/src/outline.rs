@@ -188,7 +188,11 @@ impl Outline {
                 View::Reduction { alias, .. } => add(DeclarationKind::Reduction, &alias.text, &alias.span),
             },
             Item::Signals { .. } | Item::State(_) | Item::Param(_) | Item::Let { .. } => {}
-            Item::Angle(_) | Item::Initial(_) | Item::Experiments { .. } | Item::Sample { .. } => {}
+            Item::Angle(_)
+            | Item::Assume(_)
+            | Item::Initial(_)
+            | Item::Experiments { .. }
+            | Item::Sample { .. } => {}
         }
     }
 }

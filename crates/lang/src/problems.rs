@@ -233,6 +233,9 @@ impl Item {
                 view.equations().into_iter().flat_map(|e| [e.left.clone(), e.right.clone()]).collect()
             }
             Item::Sample { avoid, .. } => avoid.clone(),
+            Item::Assume(relations) => {
+                relations.iter().flat_map(|one| [one.left.clone(), one.right.clone()]).collect()
+            }
             _ => Vec::new(),
         }
     }

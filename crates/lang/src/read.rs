@@ -45,6 +45,7 @@ impl System {
             output_guards: Vec::new(),
             avoid: Vec::new(),
             claims: Vec::new(),
+            assumed: Vec::new(),
             sets: Vec::new(),
             set_titles: BTreeSet::new(),
             maps: Vec::new(),
@@ -108,6 +109,7 @@ impl System {
         if let Err(problem) = finished {
             problems.add(problem)?;
         }
+        self.claim_what_is_assumed();
         for claim in self.claims.clone() {
             for statement in claim.body.statements() {
                 if let Err(problem) = self.check(&claim, statement) {
@@ -265,6 +267,7 @@ impl System {
             }
             Item::Experiments { count, span } => self.enter_experiments(count, span)?,
             Item::Sample { ranges, avoid } => self.sample(ranges, avoid)?,
+            Item::Assume(relations) => self.assume(relations)?,
             Item::Claim(claim) => self.claims.push((**claim).clone()),
             Item::View(view) => self.enter_view(view)?,
         }

@@ -23,6 +23,8 @@ pub(crate) enum Item {
     State(Vec<Declared>),
     Param(Vec<Declared>),
     Angle(Vec<Name>),
+    /// Inequalities under which every claim of the file is made.
+    Assume(Vec<Equation>),
     Let {
         name: Name,
         dimension: Option<DeclaredDimension>,

@@ -260,6 +260,9 @@ impl Checker<'_> {
                 }
             }
             // a range is of numbers, in the unit of what it is of
+            Item::Assume(relations) => {
+                self.conditions(relations);
+            }
             Item::Sample { avoid, .. } => {
                 for expr in avoid {
                     self.quantity(expr);

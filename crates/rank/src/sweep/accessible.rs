@@ -113,7 +113,7 @@ pub fn answer_accessibility_telling(
     system.require_continuous(brackets).map_err(CodistributionError::NoMotion)?;
     let system = &mut without_outputs(system);
     let mut equations = Vec::new();
-    for text in &question.conditions {
+    for text in system.assumptions().iter().chain(&question.conditions) {
         equations.extend(parse_condition(text).map_err(RankError::Condition)?);
     }
     let branches = solve_conditions(system, &equations)?;

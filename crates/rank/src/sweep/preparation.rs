@@ -89,7 +89,7 @@ impl<'q> RankPreparation<'q> {
         }
         system.require_motion().map_err(CodistributionError::NoMotion)?;
         let mut equations = Vec::new();
-        for text in &question.conditions {
+        for text in system.assumptions().iter().chain(&question.conditions) {
             equations.extend(parse_condition(text).map_err(RankError::Condition)?);
         }
         equations.extend(system.initial_conditions().iter().cloned());

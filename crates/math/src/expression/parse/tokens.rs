@@ -102,8 +102,9 @@ pub fn sign<'a>(text: &'static str) -> impl Parser<Text<'a>, (), ErrMode<Expecte
 }
 
 /// Words that begin something and so cannot be names.
-pub const RESERVED: [&str; 31] = [
+pub const RESERVED: [&str; 32] = [
     "system",
+    "assume",
     "cite",
     "use",
     "state",
