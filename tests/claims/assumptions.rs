@@ -73,8 +73,8 @@ fn verdicts_are_held_to_the_assumption() {
         "s.proof",
         format!("{HEAD}assume m < 0, k > 0\nclaim a: k/m > 0\nclaim b: k/m < 0 expect refuted\n"),
     );
-    let (output, found) = json(&["recheck", verdicts.to_str().unwrap()]);
-    assert_eq!(output.status.code(), Some(1), "{found}");
+    let output = palmistry(&["recheck", verdicts.to_str().unwrap(), "--json"]);
+    assert_eq!(output.status.code(), Some(1), "{}", json(&output));
 }
 
 #[test]

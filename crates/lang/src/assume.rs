@@ -2,7 +2,7 @@
 
 use super::error::Problem;
 use super::model::System;
-use super::source_text::in_one_line;
+use super::written::in_one_line;
 use super::syntax::{ClaimBody, Statement};
 use palmistry_math::expression::syntax::{Equation, ExprKind, Relation};
 
