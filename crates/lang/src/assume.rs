@@ -2,8 +2,8 @@
 
 use super::error::Problem;
 use super::model::System;
-use super::written::in_one_line;
 use super::syntax::{ClaimBody, Statement};
+use super::written::in_one_line;
 use palmistry_math::expression::syntax::{Equation, ExprKind, Relation};
 
 impl System {

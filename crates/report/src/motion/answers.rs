@@ -1,6 +1,7 @@
 //! What observers made of an experiment, as JSON and as text.
 
 use crate::axis::unit_of;
+use crate::layout::counted;
 use crate::motion::closure::{closure_json, closure_text};
 use crate::motion::fit::{finite, fit_in_words, noise_from, suspect_json, suspects_in_words};
 use crate::motion::recognition::{recognition_json, recognition_text};
@@ -260,7 +261,8 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         let ended = motion.ended().map_or_else(|| "completed".to_owned(), |lost| format!("ended {lost}"));
         let _ = writeln!(text, "{samples} samples; {ended}");
     } else {
-        let _ = writeln!(text, "{samples} samples from a file; faults: {}", experiment.faults.len());
+        let samples = counted(samples, "sample");
+        let _ = writeln!(text, "{samples} from a file; faults: {}", experiment.faults.len());
     }
     if experiment.origin != 0.0 {
         let _ = writeln!(text, "times are counted from the first sample, at {} s", experiment.origin);
@@ -301,7 +303,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
                 text,
                 "  from {:.3} s another state fits as well{}:",
                 other.from,
-                fit_in_words(other).replacen(" and fits", "", 1)
+                fit_in_words(other)
             );
             let known = Beside { bounds: &other.deviations, at_bounds: &other.at_bounds };
             state_lines(&mut text, observed, &names, other.from, &other.estimate, known);
@@ -350,11 +352,11 @@ pub(super) fn state_lines(
     for (i, name) in names.iter().enumerate() {
         let name = state_name(observed, name);
         let _ = write!(text, "    {name:<8} {:>15.9}", recovered[i]);
+        if let Some(bound) = known.bounds.get(i) {
+            let _ = write!(text, " ± {bound:.1e}");
+        }
         if let Some(truth) = &truth {
             let _ = write!(text, "  true {:>15.9}  error {:.1e}", truth[i], (recovered[i] - truth[i]).abs());
-        }
-        if let Some(bound) = known.bounds.get(i) {
-            let _ = write!(text, "  bound {bound:.1e}");
         }
         if let Some((_, bound)) = known.at_bounds.iter().find(|(place, _)| *place == i) {
             let _ = write!(text, "  at its bound {bound}");
@@ -374,8 +376,8 @@ pub(super) struct Beside<'a> {
 fn units_in_words(experiment: &Experiment) -> &'static str {
     match experiment.simulated().is_some() {
         true => {
-            "error: |recovered - true|; bound: a standard deviation; both absolute, in the unit of the state\n"
+            "estimate ± one standard deviation (Cramér-Rao bound); error: |estimate - true|; both in the unit of the state\n"
         }
-        false => "bound: a standard deviation, absolute, in the unit of the state\n",
+        false => "estimate ± one standard deviation (Cramér-Rao bound), in the unit of the state\n",
     }
 }

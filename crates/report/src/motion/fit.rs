@@ -32,16 +32,16 @@ pub(super) fn fit_in_words(update: &Update) -> String {
     let Some(fit) = &update.fit else { return String::new() };
     match update.end {
         UpdateEnd::Blind { .. } | UpdateEnd::Lost(_) | UpdateEnd::StepsSpent => String::new(),
-        _ if fit.fits => format!(" and fits{}", explained(fit)),
-        _ => format!(", but does not fit: {}", unexplained(update, fit)),
+        _ if fit.fits => format!(", {}", explained(fit)),
+        _ => format!(", fails the test of fit: {}", unexplained(update, fit)),
     }
 }
 
 fn explained(fit: &Fit) -> String {
     match fit.from {
-        NoiseFrom::Stated => format!(" ({})", p_in_words(fit.probability)),
-        NoiseFrom::Misfit => format!(" (noise estimated from the residuals: {:.1e})", fit.sigma),
-        NoiseFrom::Computation => String::new(),
+        NoiseFrom::Stated => format!("passes the chi-square test ({})", p_in_words(fit.probability)),
+        NoiseFrom::Misfit => format!("residuals are white noise of {:.1e}", fit.sigma),
+        NoiseFrom::Computation => "residuals are rounding errors".to_owned(),
     }
 }
 

@@ -140,6 +140,6 @@ fn state_lines(text: &mut String, experiment: &Experiment, sought: &[String], up
     for ((name, value), bound) in sought.iter().zip(&update.estimate).zip(&update.deviations) {
         let truth = experiment.truth(name).and_then(|all| all.get(row).copied());
         let truth = truth.map_or_else(String::new, |truth| format!("  true {truth:>15.9}"));
-        let _ = writeln!(text, "    {name:<10} {value:>15.9}{truth}  bound {bound:.1e}");
+        let _ = writeln!(text, "    {name:<10} {value:>15.9} ± {bound:.1e}{truth}");
     }
 }
