@@ -50,7 +50,7 @@ fn a_field_that_is_only_differentiated_along_raises_no_rank() {
         assert!(claims["claims"][0].get("fields").is_none(), "{claims}");
         let text = palmistry(&["rank", file, "--samples", "20"]);
         let text = String::from_utf8(text.stdout).unwrap();
-        assert!(text.contains("fields: drift f"), "{text}");
+        assert!(text.contains("; drift f"), "{text}");
         assert_eq!(text.contains("input aside"), role == "input", "{text}");
     }
 }
@@ -274,7 +274,7 @@ fn a_value_in_a_file_is_never_part_of_a_claim() {
     assert_eq!(found["rank_histogram"], serde_json::json!({ "2": 10 }));
     assert_eq!(found["held_at_the_files_values"], serde_json::json!({ "m": "2.5" }));
     let shown = String::from_utf8(palmistry(&["rank", file, "--samples", "10"]).stdout).unwrap();
-    assert!(shown.contains("held at the file's values: k = 0, m = 2.5"), "{shown}");
+    assert!(shown.contains("fixed at the values in the file: k = 0, m = 2.5"), "{shown}");
 }
 
 /// `within` compares numbers, and takes none from the file either.

@@ -176,7 +176,7 @@ fn filters_refuse_in_words() {
     for method in methods {
         let track = method.observe(&task);
         assert!(track.estimates.is_empty());
-        assert!(track.remarks[0].contains("none is read of 0 = u*x - y"), "{:?}", track.remarks);
+        assert!(track.remarks[0].contains("0 = u*x - y is not measured"), "{:?}", track.remarks);
     }
 }
 

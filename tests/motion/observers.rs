@@ -208,7 +208,7 @@ fn what_no_one_tells_is_named() {
     };
     assert_eq!(
         refused(&[("v", 1.0)], OSCILLATOR),
-        "nothing tells 'w': estimate it, give it under `known`, or hand over a column of that name"
+        "nothing determines 'w': estimate it, give it under `known`, or hand over a column of that name"
     );
     assert_eq!(refused(&[("y", 1.0)], OSCILLATOR), "'y' is no state of the system; its states are x, v, w");
 }

@@ -157,7 +157,7 @@ fn a_paper_has_slow_scenes() {
     assert!(slow["ways"][0]["seconds"].is_null(), "a time");
     let html = std::fs::read_to_string(folder.path().join("page/index.html")).unwrap();
     assert!(html.contains("<section id=slow>") && html.contains("Bodies at rest between slow palms"));
-    assert!(html.contains("The readings <b>are explained</b>"), "the verdict");
+    assert!(html.contains("The measurements <b>are explained</b>"), "the verdict");
     assert_eq!(html.matches("After ").count(), 4);
 }
 

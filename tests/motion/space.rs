@@ -312,7 +312,7 @@ fn mistakes_are_marked() {
         ("duration = 1.76", "duration = 0", "has to be positive"),
         ("duration = 1.76\n", "", "what is simulated is not all said"),
         ("samples = 89", "samples = 89\nrate = 50", "'samples' or 'rate'"),
-        ("window = 60", "window = 8", "tells no state"),
+        ("window = 60", "window = 8", "determines no state"),
         ("window = 60", "window = 100", "longer than the record"),
         ("window = 60", "least_radius = 3\ngreatest_radius = 2", "and the greatest 2"),
         ("noise = 0", "noise = -1", "must not be negative"),

@@ -187,7 +187,7 @@ fn the_program_tells_it() {
     let text = String::from_utf8(text.stdout).unwrap();
     assert!(
         text.contains(
-            "accessibility: rank 2 of 3 at almost all states (no more, error probability below 2^-1"
+            "accessibility: generic rank 2 of 3 (no more, error probability below 2^-1"
         ),
         "{text}"
     );

@@ -505,7 +505,7 @@ mod tests {
             "a map",
             [None; 2],
         );
-        assert!(only.contains("not observable at any point"), "{only}");
+        assert!(only.contains("unobservable at all points"), "{only}");
     }
 
     /// By hand: three by three cells, of which the lowest row is the last that is drawn.

@@ -35,7 +35,7 @@ fn one(observed: &SlowObserved<'_>) -> Markup {
             @if let Some(truth) = &experiment.truth {
                 "; the motion " (truth.trajectory.ended) ", with " (truth.trajectory.jumps.len()) " jumps"
             }
-            ". The readings " b class=[(!answers.explained).then_some("bad")] { @if answers.explained { "are" } @else { "are not" } " explained" } "."
+            ". The measurements " b class=[(!answers.explained).then_some("bad")] { @if answers.explained { "are" } @else { "are not" } " explained" } "."
             @if !answers.jumps.is_empty() { " Jumps found in them, and where descent in the recovered potential leads: " (jumps_in_words(answers)) "." }
         }
         (ways_table(observed))

@@ -151,20 +151,20 @@ fn what_the_rank_does_not_tell_is_refused_in_words() {
     };
     let (output, found) = observe(&scene("free", "x.gain"), &[]);
     let (message, help) = refusal(&output, &found);
-    assert_eq!(message, "no readings tell 'x.gain' from v: the rank is short of them");
+    assert_eq!(message, "no measurements distinguish 'x.gain' from v: the rank is short of them");
     assert!(help.contains("leave it out of 'estimate'"), "{help}");
     let (output, found) = observe(&scene("free", "u.gain"), &[]);
-    assert!(refusal(&output, &found).0.starts_with("no readings tell 'u.gain'"), "{found}");
+    assert!(refusal(&output, &found).0.starts_with("no measurements determine 'u.gain'"), "{found}");
     let (output, found) = observe(&scene("free", "w.gain"), &[]);
     assert!(refusal(&output, &found).0.contains("'w.gain' is no state"), "{found}");
     // what is late of a free motion is another one of it; what drives it and is on time tells the delay
     let (output, found) = observe(&scene("free", "x.delay"), &[]);
-    assert_eq!(refusal(&output, &found).0, "no readings tell 'x.delay' from v: the rank is short of them");
+    assert_eq!(refusal(&output, &found).0, "no measurements distinguish 'x.delay' from v: the rank is short of them");
     write(&folder, "driven.proof", model("").replace("v' = 0", "v' = 1"));
     let (output, found) = observe(&scene("driven", "x.delay"), &[]);
     assert_ne!(output.status.code(), Some(2), "{found}");
     let (output, found) = observe(&scene("driven", "u.delay"), &[]);
-    assert!(refusal(&output, &found).0.starts_with("the delay of 'u' cannot be sought"), "{found}");
+    assert!(refusal(&output, &found).0.starts_with("the delay of 'u' cannot be estimated"), "{found}");
     // it is told from the amplitude by gravity, and the readings then contradict a model that has it
     let (output, _) = observe(&scene("hung", "x.gain"), &[]);
     assert_eq!(output.status.code(), Some(1));

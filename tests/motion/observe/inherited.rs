@@ -110,7 +110,7 @@ fn estimates_stay_within_bounds() {
     let track = &answers(&experiment)[0].track;
     assert_eq!(track.updates[0].estimate[1], 0.6);
     assert!(
-        track.remarks.iter().any(|remark| remark.contains("'v' is held at its bound 0.6")),
+        track.remarks.iter().any(|remark| remark.contains("'v' is at its bound 0.6")),
         "{:?}",
         track.remarks
     );

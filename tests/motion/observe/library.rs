@@ -110,7 +110,7 @@ fn a_body_that_is_not_there_is_none_of_them() {
     let told = String::from_utf8(output.stdout).unwrap();
     assert!(
         told.contains(
-            "recognition among 4 known bodies, batch estimate of all measurements: it is the pebble\n"
+            "recognition among 4 known bodies, from all measurements: it is the pebble\n"
         ),
         "{told}"
     );

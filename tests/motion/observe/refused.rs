@@ -70,7 +70,7 @@ fn what_no_one_tells_is_named() {
     let scene = write(&folder, "scene.toml", &changed);
     let (output, found) = observe(&scene, &[]);
     let (message, _) = refusal(&output, &found);
-    assert!(message.contains("nothing tells 'drag'") && message.contains("known"), "{message}");
+    assert!(message.contains("nothing determines 'drag'") && message.contains("known"), "{message}");
     // told, it is a model, if a wrong one
     let told = with(&changed, "window = 80", "window = 80\nknown = { drag = 0.5 }");
     let (output, found) = observe(&write(&folder, "scene.toml", told), &[]);

@@ -171,13 +171,13 @@ fn the_unscented_filter_finds_a_decay() {
 
 /// What is wrong with [start] and [inputs], with the line that is named.
 const MISTAKES: [(&str, &str, &str, &str); 8] = [
-    ("h1 = 1.2", "", "nothing tells where 'h1' begins", "[start]"),
+    ("h1 = 1.2", "", "nothing gives the initial condition of 'h1'", "[start]"),
     ("h1 = 1.2", "h1 = -1.2", "has no value", "[start]"),
     ("h1 = 1.2", "h1 = 1.2\nh3 = 1", "declares no 'h3'", "h3 = 1"),
     ("u = \"0.2 + 0.1*sin(0.5*t)\"", "u = \"0.2 + \"", "u = 0.2 + :", "u = "),
     ("u = \"0.2 + 0.1*sin(0.5*t)\"", "u = \"h1\"", "depends on 'h1'", "u = "),
     ("u = \"0.2 + 0.1*sin(0.5*t)\"", "h1 = \"t\"", "has a value and a function of time", "h1 = \"t\""),
-    ("u = \"0.2 + 0.1*sin(0.5*t)\"", "", "nothing tells where 'u' begins", "[start]"),
+    ("u = \"0.2 + 0.1*sin(0.5*t)\"", "", "nothing gives the initial condition of 'u'", "[start]"),
     ("duration = 40\n", "", "without 'duration'", "samples"),
 ];
 

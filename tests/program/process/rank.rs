@@ -17,7 +17,7 @@ fn rank(text: &str) -> (Value, String) {
         assert_eq!(output.status.code(), Some(0), "{}", crate::process::words(&output));
         output
     };
-    (json(&run(&["--json"])), String::from_utf8(run(&[]).stdout).unwrap())
+    (json(&run(&["--json"])), String::from_utf8(run(&["--details"]).stdout).unwrap())
 }
 
 fn row<'a>(found: &'a Value, state: &str) -> &'a Value {
@@ -52,7 +52,7 @@ fn a_parameter_that_is_nearly_invisible_is_told() {
     let (found, text) =
         rank("system \"s\" state x, p drift f x' = -x others' = 0 output x sample x in [0, 1] p in [0, 1]");
     assert_eq!((&row(&found, "p")["median"], &row(&found, "p")["not_seen_at"]), (&Value::Null, &200.into()));
-    assert!(text.contains("not seen"), "{text}");
+    assert!(text.contains("unobservable"), "{text}");
 }
 
 /// Monte Carlo: noise of the units that are told is put on the words, and the states are solved for.

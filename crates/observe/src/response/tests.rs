@@ -55,7 +55,7 @@ fn what_does_not_move_says_why() {
         response(&system(text), &question, &[0.0, 1.0]).unwrap_err().to_string()
     };
     let whole = [("x", 1.0), ("y", 0.0), ("k", 1.0)];
-    assert_eq!(refused(&whole[..2], &[]), "nothing tells where 'k' begins");
+    assert_eq!(refused(&whole[..2], &[]), "nothing gives the initial condition of 'k'");
     assert_eq!(refused(&[("x", 1.0), ("height", 1.0)], &[]), "the system declares no 'height'");
     let moved = refused(&whole, &[("x", "t")]);
     assert_eq!(moved, "'x' moves by its own equation, and is no function of time");

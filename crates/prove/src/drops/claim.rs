@@ -320,9 +320,9 @@ fn on_a_set(algebra: &mut Algebra<'_>, search: &mut Search<'_>, explored: &Explo
         (None, true) => "there are no states".to_owned(),
         (None, false) if full && open.is_empty() => "it is no lower".to_owned(),
         (None, false) => "it is not decided whether it is lower".to_owned(),
-        (Some(lowered), true) if some => format!("it is rank-deficient at all states: {lowered}"),
+        (Some(lowered), true) if some => format!("it is lower at all states: {lowered}"),
         (Some(lowered), true) => {
-            format!("it is rank-deficient at all states, of which none was found: {lowered}")
+            format!("it is lower at all states, of which none was found: {lowered}")
         }
         (Some(lowered), false) => {
             format!("it is not lower everywhere, or that is not decided; it is {lowered}")

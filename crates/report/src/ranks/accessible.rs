@@ -60,11 +60,11 @@ fn bounds_text(what: &str, bounds: &RankBounds, full: usize, out: &mut String) {
                 true => format!("no more, error probability below 2^{}", bounds.log2_error.ceil()),
                 false => "certain".to_owned(),
             };
-            let where_to = match bounds.from_a_state {
-                true => "states that the domain connects with the sampled ones",
-                false => "states",
+            let scope = match bounds.from_a_state {
+                true => " on the parts of the domain that have sampled states",
+                false => "",
             };
-            writeln!(out, "{what}: rank {rank} of {full} at almost all {where_to} ({sure})")
+            writeln!(out, "{what}: generic rank {rank} of {full}{scope} ({sure})")
         }
         None => writeln!(
             out,

@@ -76,14 +76,14 @@ fn every_value_is_checked_and_its_place_marked() {
         (
             "clamp = [\"omega0\"]",
             "clamp = [\"r1\", \"r2\", \"omega0\"]",
-            "all that is sought is clamped",
+            "all estimated states are clamped",
             "[",
             "",
         ),
-        ("{ rho = 0.6 }", "{ r1 = 0.6 }", "'r1' is both known and sought", "r1", "leave it out"),
+        ("{ rho = 0.6 }", "{ r1 = 0.6 }", "'r1' is both known and estimated", "r1", "leave it out"),
         ("{ rho = 0.6 }", "{ rho = nan }", "'rho' is NaN", "nan", "finite"),
         ("r2 = 2.0, omega0 = 0 }", "omega0 = 0 }", "no first guess of 'r2'", "{ r1", "add r2"),
-        ("omega0 = 0 }", "omega0 = 0, mass = 1 }", "'mass' is not in 'estimate'", "mass", "what is sought"),
+        ("omega0 = 0 }", "omega0 = 0, mass = 1 }", "'mass' is not in 'estimate'", "mass", "estimated: "),
         (
             "steps = 4",
             "steps = 4\nguess_off = 1",
