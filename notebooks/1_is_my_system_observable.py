@@ -51,7 +51,7 @@ found = one.rank(samples=1000)
 found.generic, found.dimension, found.histogram, found.certified
 
 # %% [markdown]
-# Of three states two are seen: at almost all states, and at each of a thousand drawn ones, where the rank is proved at that very state. It stays so
+# The rank is two of three: generically, and at each of a thousand drawn states, where the rank is proved at that very state. It stays so
 # however long one drives.
 
 # %%
@@ -60,9 +60,9 @@ assert found.histogram == {2: 1000} and found.certified == 1000
 {str(name): str(verdict) for name, verdict in zip(found.unknowns["name"], found.unknowns["verdict"])}
 
 # %% [markdown]
-# ## What is not seen
+# ## What is unobservable
 #
-# None of the three is seen alone. What is not seen is a vector field: along it nothing changes that the beacon tells. It is found in
+# None of the three is observable alone. The unobservable direction is a vector field: along it no measurement of the beacon changes. It is found in
 # closed form, and so are functions of the states that *are* seen.
 
 # %%
@@ -70,11 +70,11 @@ assert found.histogram == {2: 1000} and found.certified == 1000
 assert field["components"] == {"x": "-y", "y": "x", "theta": "1"}
 seen = [function["text"] for function in found.json["unseen_fields"]["functions"]]
 assert sorted(seen) == ["x*cos(theta) + y*sin(theta)", "x*sin(theta) - y*cos(theta)"]
-print("not seen:", field["text"])
+print("unobservable direction:", field["text"])
 print("seen:    ", ", ".join(seen))
 
 # %% [markdown]
-# It turns the robot about the beacon, heading and all. Below, the three robots of one colour have the same readings for ever, whatever they do: here all of
+# It turns the robot about the beacon, heading and all. Below, the three robots of one colour have the same measurements for ever, whatever they do: here all of
 # them drive along the same arc, and their distances stay the same.
 
 # %%
@@ -107,7 +107,7 @@ for colour, start in (("C0", (2.0, 0.5, 2.0)), ("C1", (0.6, 1.2, 0.2))):
         readings.plot(0.025 * np.arange(len(path)), np.hypot(path[:, 0], path[:, 1]), style, color=colour, linewidth=3 - 0.4 * angle)
 plane.plot(0, 0, "k^")
 plane.annotate("beacon", (0, 0), (0.15, -0.45))
-plane.set(title="Six robots, and the field that is not seen", xlabel="x", ylabel="y", aspect="equal")
+plane.set(title="Six robots, and the unobservable direction", xlabel="x", ylabel="y", aspect="equal")
 readings.set(title="What they read", xlabel="time", ylabel="distance")
 plt.show()
 

@@ -39,7 +39,7 @@ for name, found in ranks.items():
     print(f"{REGIMES[name]:38} {found.dimension:2} unknowns, rank {found.generic:2}; at drawn states {found.histogram}, certified at {found.certified}")
 
 # %% [markdown]
-# In all four all is seen, at almost all states and at each that was drawn. The palms' own sensors tell some states by themselves; what remains to be seen are
+# In all four the rank condition holds, generically and at each state that was drawn. The palms' own sensors measure some states; what remains to be observed are
 # three unknowns or four, the two radii, the body's rate, and in the general case its radius of gyration.
 
 # %%
@@ -50,7 +50,7 @@ for found in ranks.values():
     assert set(found.unknowns["verdict"]) <= {"locally observable", "locally identifiable"}
 
 # %% [markdown]
-# ## Where it is seen well
+# ## Where the states are observable well
 #
 # Full rank says nothing of how well. The standard deviation of a state over its prior one does, where each Lie derivative is measured up to its own range: on the ridges two states read
 # nearly the same. Drawn is the worst state, by all derivatives that were taken. All coordinates are held but two; at every point of the maps the rank is full, and certified.

@@ -1,13 +1,13 @@
-"""Systems that are seen only through their outputs: the answers of the program `palmistry`, to the last bit, in Python.
+"""Observability, identifiability and published equations of nonlinear control systems: the answers of the program `palmistry`, to the last bit, in Python.
 
     import palmistry
     system = palmistry.System.read("pendulum.proof")
     system.prove()                                  # every claim with its verdict
-    system.rank(samples=100_000)                    # what is seen, certified state by state
+    system.rank(samples=100_000)                    # what is observable, certified state by state
     system.eval("L(f, f, phi)", at={"phi": "1/3", "omega": 2}, digits=40)
     system.verdicts(states)                         # numpy in, numpy out
     system.certify(boxes=1000)                      # full rank on whole boxes
-    palmistry.observe("scene.toml")                 # observers, on simulated or recorded readings
+    palmistry.observe("scene.toml")                 # observers, on simulated or recorded measurements
     palmistry.from_sympy(states, fields, outputs)   # a proof file from SymPy expressions
 
 `palmistry.recheck` (a second checker) and `palmistry.cluster` (sweeps over many machines) need nothing of this, and work from the source

@@ -132,11 +132,11 @@ class Claims(Answer, Sequence):
 
 
 class Rank(Answer):
-    """The rank of the observability codistribution: at almost all states, and at the sampled ones."""
+    """The rank of the observability codistribution: generically, and at the sampled states."""
 
     @property
     def dimension(self) -> int:
-        """How many unknowns there are: the rank of a system that is seen."""
+        """How many unknowns there are: the rank where all are locally observable."""
         return self.json["dimension"]
 
     @property
@@ -146,7 +146,7 @@ class Rank(Answer):
 
     @property
     def generic(self) -> int | None:
-        """The rank at almost all states of the first branch; None where it is not known."""
+        """The generic rank on the first branch; None where it is not known."""
         return self.branches[0]["generic"]["rank"]
 
     @property
@@ -327,14 +327,14 @@ class Observation(Answer):
 
     @property
     def readings(self) -> Table:
-        """What the sensors told, a row a sample: time (s), outputs, inputs."""
+        """The measurements, a row a sample: time (s), outputs, inputs."""
         found = self._table("readings")
         assert found is not None
         return found
 
     @property
     def motion(self) -> Table | None:
-        """All of the simulated motion, a row a sample; None where the readings come from a file."""
+        """All of the simulated motion, a row a sample; None where the measurements come from a file."""
         return self._table("motion")
 
     @property

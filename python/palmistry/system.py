@@ -166,12 +166,12 @@ class System:
         coordinates: bool = False,
         times: bool = True,
     ) -> Rank:
-        """The rank of the observability codistribution, at almost all states and at sampled ones.
+        """The rank of the observability codistribution, generically and at sampled states.
 
-        samples: how many states are drawn; by default 1000 where the words are short, else none. seed: of these states.
+        samples: how many states are drawn; by default 1000 where the Lie derivatives are short, else none. seed: of these states.
         at: states and parameters held fixed, angles in radians. where: conditions, as 'sin(phi) = 0' or '0 < x < 1'.
-        order: words of exactly up to so many fields. verdict: 'certified' or 'computed'. digits: of the worst state's singular values.
-        table: a row a state in `.states`; coordinates: these too. times: whether `seconds` are told, which no two runs have alike.
+        order: Lie derivatives of exactly up to this order. verdict: 'certified' or 'computed'. digits: of the worst state's singular values.
+        table: a row a state in `.states`; coordinates: these too. times: whether `seconds` are given, which no two runs have alike.
         """
         asked = (samples, seed, _pairs(at), _several(where), order, _wanted(verdict), digits, times, table or coordinates, coordinates)
         return _asked(Rank, lambda: self._native.rank(*asked))
@@ -224,7 +224,7 @@ class System:
     ) -> Table:
         """How well each unknown is observable at states of one's own: its standard deviation, normalised by its prior one over the sample box.
 
-        A column an unknown, of shape (states,); infinite where it is not observable, or not to be told from it; NaN at a pole. These are the
+        A column an unknown, of shape (states,); infinite where it is unobservable, or not distinguishable from it; NaN at a pole. These are the
         numbers of the maps: every Lie derivative of up to `order` fields is measured up to the standard deviation of its values over the sample
         box. states, at: as in `verdicts`. Computed in doubles, and not certified.
         """
@@ -309,9 +309,9 @@ def observe(
     studies: bool = False,
     times: bool = True,
 ) -> Observation:
-    """Runs the observers of a scene, on simulated readings or on those of a file.
+    """Runs the observers of a scene, on simulated or recorded measurements.
 
-    scene: a TOML file. data: readings as CSV or Parquet. seed: another one than the scene's. studies: run these too. times: whether `seconds` are told.
+    scene: a TOML file. data: measurements as CSV or Parquet. seed: another one than the scene's. studies: run these too. times: whether `seconds` are told.
     """
     data = None if data is None else os.fspath(data)
     return _asked(Observation, lambda: _native.observe(os.fspath(scene), data, seed, studies, times))

@@ -10,14 +10,14 @@ use palmistry::pose_surface::numbers;
 use palmistry::report::{advice_json, advice_text};
 use std::path::PathBuf;
 
-/// Seeks motions of two palms that touch all normals of a body and hold it all the time, before an experiment is made.
+/// Searches for motions of two palms that touch all normals of a body and hold it all the time, before an experiment is made.
 ///
 /// SCENE has the body, how it starts, how long the experiment lasts, and the observer. Courses of the palms (an angle, a rate and a swing each) are drawn
 /// within limits, the body is moved by Newton's laws, and the best courses are varied, less and less. Of those that touch most it is asked how well windows of
-/// the readings could tell the state: the bound of Cramér and Rao at the truth, with the scene's sensors. What is found is printed with the lines to paste
+/// the measurements could determine the state: the Cramér-Rao bound at the truth, with the scene's sensors. What is found is printed with the lines to paste
 /// into [palms]. The search is random: the same seed gives the same answer with any number of threads, and more trials may find better ones.
 ///
-/// Of a scene with motion = "spatial" it seeks runs: how to lay the body on its three palms, and how to set it turning, so that the hull of all contacts grows most, run by run, beside as
+/// Of a scene with motion = "spatial" it searches for runs: how to lay the body on its three palms, and how to set it turning, so that the hull of all contacts grows most, run by run, beside as
 /// many runs drawn at random.
 ///
 /// The exit status is 1 where no course was found that holds the body to the end, or fewer runs than were asked.

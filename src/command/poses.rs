@@ -47,7 +47,7 @@ pub(crate) struct Poses {
     /// How far palms keep from being parallel to each other or to the ground, rad: of plans and certificates.
     #[arg(long, value_name = "RAD", default_value_t = 0.15)]
     margin: f64,
-    /// Margins at which components are told, rad.
+    /// Margins at which components are reported, rad.
     #[arg(long, value_name = "RAD,...", default_value = "0.004,0.05,0.15,0.3")]
     margins: String,
     /// Plan from one orientation to another, rad.

@@ -71,7 +71,7 @@ pub(crate) struct Rank {
     verdict: Wanted,
     /// Give the singular values of the state whose rank is hardest to decide, and its condition, to N significant digits (at most 200);
     /// by doubles they have about three. The digits are what '--verdict' says: all of them certain, or agreed on by
-    /// doubles and double-doubles. The cheapest numbers that suffice are taken; 'climbed' says from how many number types it
+    /// doubles and double-doubles. The cheapest numbers that suffice are taken; 'escalations' says how many number types were tried
     /// before. Which state is worst is decided by doubles.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_DIGITS as i64))]
     digits: Option<u16>,
@@ -98,7 +98,7 @@ pub(crate) struct Rank {
     #[arg(long, value_name = "DIR", requires = "where_it_drops")]
     out: Option<PathBuf>,
     /// Instead of sampled states: how many values of each unknown give the same outputs, one (it is globally identifiable or
-    /// observable), finitely many over the complex numbers, or infinitely many. For rational systems, at almost all states, by
+    /// observable), finitely many over the complex numbers, or infinitely many. For rational systems, generically, by
     /// Groebner bases at
     /// random points modulo random primes; each number says whether it is proved or computed.
     #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "accessible", "where_it_drops", "reparametrise", "shard", "merge", "missing"])]

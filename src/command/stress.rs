@@ -19,7 +19,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 ///
 /// Lines approach every singular set down to a distance of 1e-15. At each point, an exact rational state, the rank is decided in single
 /// precision, in doubles by numpy's rule, in doubles after equilibration, with the errors that intervals
-/// know, by intervals alone, in double-doubles, and by the ladder that 'palmistry rank' climbs; beside them stands the
+/// know, by intervals alone, in double-doubles, and by the number types that 'palmistry rank' takes in turn; beside them stands the
 /// certified rank. For each the table has the
 /// distance at which it first reports another rank, and at which an entry first loses more than half of its digits, each as
 /// a range over the states; and at how many states on the set itself it has the exact rank, since whoever always says

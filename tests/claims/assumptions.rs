@@ -62,7 +62,7 @@ fn verdicts_are_held_to_the_assumption() {
     let file = write(
         &folder,
         "s.proof",
-        format!("{HEAD}assume m > 0, k > 0\nclaim a: k/m > 0\nclaim b: k/m < 0 expect refuted\n"),
+        format!("{HEAD}assume m > 0, k > 0\nclaim a: k/m > 0\nclaim b expect refuted: k/m < 0\n"),
     );
     let verdicts = folder.path().join("v.json");
     let output = palmistry(&["prove", file.to_str().unwrap(), "--verdicts", verdicts.to_str().unwrap()]);
@@ -71,7 +71,7 @@ fn verdicts_are_held_to_the_assumption() {
     write(
         &folder,
         "s.proof",
-        format!("{HEAD}assume m < 0, k > 0\nclaim a: k/m > 0\nclaim b: k/m < 0 expect refuted\n"),
+        format!("{HEAD}assume m < 0, k > 0\nclaim a: k/m > 0\nclaim b expect refuted: k/m < 0\n"),
     );
     let output = palmistry(&["recheck", verdicts.to_str().unwrap(), "--json"]);
     assert_eq!(output.status.code(), Some(1), "{}", json(&output));

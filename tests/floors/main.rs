@@ -5,6 +5,7 @@
 mod features;
 mod manifests;
 mod source;
+mod words;
 
 use source::{Crate, ModulePath};
 use std::collections::{BTreeMap, BTreeSet};

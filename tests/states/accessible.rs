@@ -186,9 +186,7 @@ fn the_program_tells_it() {
     assert_eq!(text.status.code(), Some(0));
     let text = String::from_utf8(text.stdout).unwrap();
     assert!(
-        text.contains(
-            "accessibility: generic rank 2 of 3 (no more, error probability below 2^-1"
-        ),
+        text.contains("accessibility: generic rank 2 of 3 (no more, error probability below 2^-1"),
         "{text}"
     );
     assert!(text.contains("a combination of z; for one, dz = 0"), "{text}");

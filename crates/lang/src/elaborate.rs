@@ -214,7 +214,7 @@ impl System {
         let symbols =
             self.symbols.iter().filter(|(_, info)| wanted != Wanted::State || info.kind == Kind::State);
         let symbols = symbols.map(|(symbol, _)| self.symbol_name(*symbol));
-        let definitions = self.definitions.keys().map(String::as_str).chain(["pi", "rank"]);
+        let definitions = self.definitions.keys().map(String::as_str).chain(["pi", "rank", "infinity"]);
         let fields = self.fields.iter().chain(&self.imported_fields).map(|f| f.name.as_str());
         let near = match wanted {
             Wanted::Field => nearest(name, fields),

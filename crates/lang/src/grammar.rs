@@ -422,6 +422,15 @@ fn never_closed(at: usize) -> Expected {
     Expected { what: "a closing quotation mark for this one".to_owned(), at, help: Some(help.to_owned()) }
 }
 
+/// With the entry that may be meant, where a line begins with a word that is almost one and was taken for a state.
+fn advised(expected: Expected, text: &str) -> Expected {
+    let before = text.get(..expected.at).unwrap_or_default();
+    let line = before.rsplit(ends_a_line).next().unwrap_or_default().trim();
+    let near = super::error::nearest(line, ENTRIES).filter(|_| expected.help.is_none());
+    let meant = near.filter(|near| *near != line).map(|near| format!("perhaps you meant '{near}'"));
+    Expected { help: expected.help.or(meant), ..expected }
+}
+
 /// What could be read of a file.
 #[derive(Default)]
 pub(super) struct Entries {
@@ -469,7 +478,7 @@ pub(super) fn parse_entries(text: &str, most: usize) -> Entries {
                 _ => (start, begin, if behind { before.1 } else { begin }, expected),
             };
             let end = if damage.len() + 1 >= most { text.len() } else { after(begin) };
-            damage.push(Damage { expected: expected.hinted(text), left_out: damaged..end });
+            damage.push(Damage { expected: advised(expected.hinted(text), text), left_out: damaged..end });
             input.reset(&start);
             input.next_slice(end - begin);
         }

@@ -47,7 +47,7 @@ fn ways<'a>(observed: &SlowObserved<'a>) -> Vec<Way<'a>> {
             if answers.explained { "are" } else { "are NOT" }
         );
         all.push(Way {
-            name: "all readings at once",
+            name: "batch least squares",
             track: &found.track,
             seconds: Some(answers.seconds[0]),
             remark,

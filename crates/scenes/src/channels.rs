@@ -85,7 +85,7 @@ pub(super) fn are_columns(scene: &Scene, signals: &Signals) -> Result<(), SceneE
             return Err(scene.error_at(
                 &place,
                 format!("there is no column '{column}'"),
-                "sought here",
+                "estimated here",
                 help,
             ));
         }
@@ -231,7 +231,7 @@ pub(super) fn are_told(
     };
     let place = scene.observer.estimate.iter().position(|name| name == first).unwrap_or(0);
     let help = "leave it out of 'estimate', or give one of the others under `known`";
-    Err(scene.error_at(&format!("observer.estimate[{place}]"), message, "sought here", help))
+    Err(scene.error_at(&format!("observer.estimate[{place}]"), message, "estimated here", help))
 }
 
 /// The true value of a sought gain, bias or delay of a simulated sensor; none of any other name.

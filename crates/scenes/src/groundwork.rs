@@ -97,7 +97,7 @@ fn known_states(scene: &Scene, system: &System) -> Result<(), SceneError> {
             };
             let error = ModelError::NoState { name: name.clone(), states: states.join(", ") };
             let place = format!("observer.estimate[{index}]");
-            return Err(scene.error_at(&place, error.to_string(), "sought here", help));
+            return Err(scene.error_at(&place, error.to_string(), "estimated here", help));
         }
     }
     Ok(())

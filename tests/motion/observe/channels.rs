@@ -159,7 +159,10 @@ fn what_the_rank_does_not_tell_is_refused_in_words() {
     assert!(refusal(&output, &found).0.contains("'w.gain' is no state"), "{found}");
     // what is late of a free motion is another one of it; what drives it and is on time tells the delay
     let (output, found) = observe(&scene("free", "x.delay"), &[]);
-    assert_eq!(refusal(&output, &found).0, "no measurements distinguish 'x.delay' from v: the rank is short of them");
+    assert_eq!(
+        refusal(&output, &found).0,
+        "no measurements distinguish 'x.delay' from v: the rank is short of them"
+    );
     write(&folder, "driven.proof", model("").replace("v' = 0", "v' = 1"));
     let (output, found) = observe(&scene("driven", "x.delay"), &[]);
     assert_ne!(output.status.code(), Some(2), "{found}");

@@ -109,9 +109,7 @@ fn a_body_that_is_not_there_is_none_of_them() {
     assert_eq!(output.status.code(), Some(0));
     let told = String::from_utf8(output.stdout).unwrap();
     assert!(
-        told.contains(
-            "recognition among 4 known bodies, from all measurements: it is the pebble\n"
-        ),
+        told.contains("recognition among 4 known bodies, from all measurements: it is the pebble\n"),
         "{told}"
     );
     let page = std::fs::read_to_string(format!("{page}/index.html")).unwrap();

@@ -91,5 +91,5 @@ fn studies_run_where_there_is_a_truth_and_are_refused_where_not() {
         data.to_str().unwrap(),
     ]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(json(&output)["error"]["message"].as_str().unwrap().contains("a study needs the truth"));
+    assert!(json(&output)["error"]["message"].as_str().unwrap().contains("a study needs the true states"));
 }

@@ -202,7 +202,7 @@ fn what_is_no_study_cannot_be_cut() {
     let record = case.path("record.csv");
     case.succeeds(&["--record", &record]);
     let said = case.refused(&["--data", &record, "--shard", "1/2", "--part", &parts]);
-    assert!(said.contains("a study needs the truth"), "{said}");
+    assert!(said.contains("a study needs the true states"), "{said}");
     assert_eq!(case.run(&["--shard", "1/2", "--part", &parts, "--out", &parts]).status.code(), Some(2));
 }
 

@@ -71,7 +71,7 @@ fn noise_table(observed: &Observed<'_>) -> Markup {
                 td.n { (level.converged) " of " (level.seeds) }
                 @for (error, bound) in level.errors.iter().zip(&level.bounds) {
                     td.n { (format!("{error:.2e}")) }
-                    td.n { @if bound.is_finite() { (format!("{bound:.2e}")) } @else { "not seen" } }
+                    td.n { @if bound.is_finite() { (format!("{bound:.2e}")) } @else { "unobservable" } }
                     td.n { @if bound.is_finite() && *bound > 0.0 { (format!("{:.2}", error / bound)) } @else { "-" } }
                 }
             } } }

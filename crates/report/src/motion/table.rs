@@ -114,7 +114,7 @@ fn tested(answer: &Answer) -> String {
 }
 
 fn bound_in_words(value: f64) -> String {
-    if value.is_finite() { format!("{value:.1e}") } else { "not seen".to_owned() }
+    if value.is_finite() { format!("{value:.1e}") } else { "unobservable".to_owned() }
 }
 
 fn last_truth(observed: &Observed<'_>) -> Option<Vec<f64>> {

@@ -176,7 +176,7 @@ fn ranks(ranks: &[SetRank]) -> Markup {
     html! {
         div.scroll { table {
             thead { tr {
-                th { "states" } th { "rank" } th { "not seen" } th { "rank, rows of the file" } th { "not seen by these" }
+                th { "states" } th { "rank" } th { "unobservable" } th { "rank, rows of the file" } th { "unobservable by these" }
                 th { "Lie derivatives used" } th { "sampled" } th { "certified" } th { "least observable" }
             } }
             tbody {

@@ -146,7 +146,7 @@ impl SlowExperiment {
         let together = from_any(readings, interrupt)
             .map(|found| without_detours(readings, with_kinks(readings, found, interrupt), interrupt));
         timed(&mut seconds[0], begin);
-        done("all readings at once");
+        done("batch least squares");
         let explained = together.as_ref().is_some_and(|found| found.explains(EXACT));
         let start = match (&self.truth, &together) {
             (Some(truth), _) => {

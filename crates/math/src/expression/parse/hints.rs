@@ -46,6 +46,10 @@ fn at_the_place(before: &str, rest: &str) -> Option<String> {
     AT_THE_PLACE.iter().find_map(fixed).or_else(|| decimal_comma(line, rest)).or_else(|| of_words(line, rest))
 }
 
+fn is_function(name: &str) -> bool {
+    Function::ALL.into_iter().any(|function| function.name() == name)
+}
+
 fn decimal_comma(line: &str, rest: &str) -> Option<String> {
     let digit = |c: char| c.is_ascii_digit();
     let is_one = line.ends_with(digit) && rest.strip_prefix(',').is_some_and(|rest| rest.starts_with(digit));
@@ -69,6 +73,16 @@ fn of_words(line: &str, rest: &str) -> Option<String> {
             "a condition of a claim is written with 'where', as in '... where omega = 0'".to_owned(),
         );
     }
+    if let Some((base, power)) = line.rsplit_once('^')
+        && rest.starts_with('(')
+        && !power.is_empty()
+        && power.chars().all(|c| c.is_ascii_digit())
+        && let Some(function) = base.rsplit(|c| !is_word(c)).next().filter(|name| is_function(name))
+    {
+        return Some(format!(
+            "a power of a function stands behind its brackets, as in {function}(x)^{power}"
+        ));
+    }
     if words.last() == Some(&"in") && rest.starts_with('(') {
         return Some("a range has square brackets, as in x in [-1, 1]".to_owned());
     }
@@ -87,7 +101,7 @@ fn of_a_rate(before: &str, rest: &str) -> Option<String> {
         line.trim_end().rsplit(|c: char| !is_word(c)).next().filter(|_| !line.trim().is_empty())
     {
         // behind an expression stands no state whose rate follows
-        let help = match Function::ALL.into_iter().any(|function| function.name() == left) {
+        let help = match is_function(left) {
             true => format!("a function has its argument in brackets, as in {left}({name})"),
             false if left.is_empty() => "a product is written with '*'".to_owned(),
             false => format!("a product is written with '*', as in {left}*{name}"),
