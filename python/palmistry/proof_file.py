@@ -3,7 +3,6 @@
 import os
 import re
 import stat
-import unicodedata
 from collections import defaultdict
 from functools import cache, reduce
 from operator import add, attrgetter, neg, sub
@@ -11,13 +10,9 @@ from operator import add, attrgetter, neg, sub
 from .graph import Map, call, derivation, number, put_in, refuse, spend, symbol
 from .proof_parser import HOLDS, NAME, Parser, texts, without_comments
 
-# what a name may be written with, by the names of characters: accents are no part of it
-LETTER = re.compile(r"GREEK (?:(CAPITAL|SMALL) LETTER (?:FINAL )?|LUNATE )?(\w+)(?: SYMBOL)?")
-GREEK = {chr(code): found for code in range(0x391, 0x3f6) if code != 0x3f2 and (found := LETTER.fullmatch(unicodedata.name(chr(code), "")))}
-GREEK = {x: (found[2].capitalize() if found[1] == "CAPITAL" else found[2].lower()).replace("amda", "ambda") for x, found in GREEK.items()}
-GREEK = {x: name for x, name in GREEK.items() if name.lower() in
-         "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi chi psi omega".split()}
-GREEK |= {"\u00b5": "mu", "\u2126": "Omega", "\u2206": "Delta"}
+LETTERS = ("alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi chi psi omega".split())
+GREEK = {chr(base + at + (at > 16)): x for at, name in enumerate(LETTERS) for base, x in ((0x3b1, name), (0x391, name.capitalize()))}
+GREEK |= zip("\u03c2\u03d0\u03d1\u03d5\u03d6\u03f0\u03f1\u03f5\u00b5\u2126\u2206", "sigma beta theta phi pi kappa rho epsilon mu Omega Delta".split())
 ENTRY = re.compile(r"^[ \t]*(?=(?:system|use|state|param|angle|assume|known|unknown|initial|experiments|let|drift|input|field"
                    r"|output|sample|claim|erratum|damaged|scan|convention|loose|definition|undecided|set|pole|map|line"
                    r"|reduction)\b)", re.M)
@@ -25,6 +20,7 @@ LARGEST, MOST_CLAIMS, MOST_NAMES = 16 << 20, 100_000, 2000  # bytes of a proof f
 READ, BYTES = 1000, 8  # what a file takes as work, and what as many bytes take as one node
 
 def each(do, *of): return Matrix(tuple(do(*x) for x in zip(*rows, strict=True)) for rows in zip(*of, strict=True))
+def spelled(text): return re.sub(r'"[^"]*"|[^\x00-\x7f]', lambda x: GREEK.get(x[0], x[0]), text)
 def entries(x): return [entry for row in x for entry in row]
 def one(x): return Matrix([(x,)])
 def single(x): return x[0][0] if len(x) == len(x[0]) == 1 else refuse("a matrix where a number is meant")
@@ -115,8 +111,7 @@ class System:
         whole = read_text(path, LARGEST)
         spend(READ + len(whole) // BYTES)
         text = re.sub(r'"[^"]*"|#[^\n]*', lambda x: " ".join(x[0].split()) * (x[0][0] == '"'), whole)
-        # a name may be written with Greek letters; a text in quotation marks is no name
-        text = re.sub(r'"[^"]*"|[^\x00-\x7f]', lambda x: GREEK.get(x[0], x[0]), text)
+        text = spelled(text)
         self.digest, self.names, self.claims = digest(whole) if depth == 0 else "", defaultdict(list), {}
         self.lets, self.rates, self.known, self.assumed = {}, {}, {}, []
         self.functions = {**FUNCTIONS, "d": self.differentials, "bracket": self.bracket}
@@ -210,10 +205,10 @@ class System:
 
     def word(self, text):
         """A word by its name, as `Lf Lg y`: an output, differentiated along what moves the system."""
-        first, _, rest = text.partition(" ")
+        first, _, rest = spelled(text).partition(" ")
         if rest and first[1:] in self.names["moving"]:
             return self[first[1:]].along[self.word(rest)]
-        found = single(*self.read(text))
+        found = single(*self.read(spelled(text)))
         return found if found in self.seen() else refuse(f"'{text}' is no output")
 
     def statement(self, text):

@@ -21,7 +21,7 @@ from operator import sub
 
 from .graph import (MADE, RUN, Expression, Interval, Map, Modulo, Node, Spent, call, derivation, enclosed, forget, number, put_in, refuse,
                     short, spend, symbol)
-from .proof_file import BYTES, HOLDS, System, determinant, each, entries, read_text
+from .proof_file import BYTES, HOLDS, System, determinant, each, entries, read_text, spelled
 from .proof_parser import compact, parts
 
 PRIMES = (1 << 61) - 1, (1 << 89) - 1, (1 << 107) - 1
@@ -351,7 +351,8 @@ def bound(system, record, kind):
         return
     text = system.claims.get(record["id"]) or doubt("the proof file has no such claim")
     spend(len(text) // BYTES)
-    if compact(text) != "".join(record["statement"].split()) or parts(text) != asked:
+    asked = {key: spelled(value) for key, value in asked.items()}
+    if compact(text) != "".join(spelled(record["statement"]).split()) or parts(text) != asked:
         doubt("the claim of this id says something else")
     if re.search(r"\bon\b", text) or asked["sense"] in ("everywhere", "except") and not asked["what"].startswith("rank"):
         refuse("a claim on the sample box, or at all states and of no rank")

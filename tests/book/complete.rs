@@ -47,7 +47,9 @@ fn every_command_is_listed_with_its_options() {
         let listed: BTreeSet<&str> =
             row.rsplit('|').nth(1).unwrap().split('`').filter(|word| word.starts_with("--")).collect();
         let help = text(&[name, "--help"]);
-        for old in ["almost all states", "not seen", " readings", "told apart", "sought", "is told", "are told"] {
+        for old in
+            ["almost all states", "not seen", " readings", "told apart", "sought", "is told", "are told"]
+        {
             assert!(!help.contains(old), "'{name} --help' says '{old}'");
         }
         let options = help.lines().filter_map(|line| {

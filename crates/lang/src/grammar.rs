@@ -426,7 +426,8 @@ fn never_closed(at: usize) -> Expected {
 fn advised(expected: Expected, text: &str) -> Expected {
     let before = text.get(..expected.at).unwrap_or_default();
     let line = before.rsplit(ends_a_line).next().unwrap_or_default().trim();
-    let near = super::error::nearest(line, ENTRIES).filter(|_| expected.help.is_none());
+    let is_word = line.chars().all(|c| c.is_ascii_alphanumeric());
+    let near = super::error::nearest(line, ENTRIES).filter(|_| is_word && expected.help.is_none());
     let meant = near.filter(|near| *near != line).map(|near| format!("perhaps you meant '{near}'"));
     Expected { help: expected.help.or(meant), ..expected }
 }

@@ -280,7 +280,7 @@ fn errors_and_bounds_have_one_unit() {
     let answers = answers(&experiment);
     let observed = palmistry::report::Observed::of(&experiment, &answers);
     let text = palmistry::report::observe_text(&observed);
-    assert!(text.contains("both absolute"), "{text}");
+    assert!(text.contains("both in the unit of the state"), "{text}");
     let found = palmistry::report::observe_json(&observed);
     let state = &found["observers"][0]["updates"][0]["states"]["x"];
     let of = |key: &str| state[key].as_f64().unwrap();
