@@ -220,7 +220,7 @@ def directions(text, fields, numbers):
 
 
 def is_seen(word):
-    return None if word == "undecided" else not word.startswith("not ")
+    return None if word == "undecided" else word not in ("unobservable", "non-identifiable")
 
 
 def main():

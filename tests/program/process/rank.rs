@@ -38,7 +38,7 @@ fn a_parameter_that_is_nearly_invisible_is_told() {
     assert_eq!(k["nearly_invisible"], true);
     assert!((row(&found, "x")["median"].as_f64().unwrap() - 1.0).abs() < 0.1);
     assert!(
-        text.lines().any(|line| line.trim_start().starts_with("k ") && line.ends_with("nearly invisible")),
+        text.lines().any(|line| line.trim_start().starts_with("k ") && line.ends_with("nearly unobservable")),
         "{text}"
     );
     // the same in an output: p = (y + Lf y)/1e-6

@@ -115,7 +115,7 @@ fn reports_in_words_say_what_was_decided_and_the_status_is_that_of_the_last() {
     let summary = |run: &Run| loop {
         let line = run.line();
         assert!(!line.contains('\u{1b}'), "{line}");
-        if line.contains(" claims: ") {
+        if line.contains(" not as expected") {
             return line;
         }
     };

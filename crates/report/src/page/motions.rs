@@ -20,10 +20,11 @@ pub(super) fn unseen_motions(ranks: &[SetRank]) -> Markup {
 }
 
 fn of_a_set(name: &str, found: &UnseenMotions) -> Markup {
-    let scope = if found.for_all_parameters { " whatever the parameters" } else { " at the file's values" };
+    let scope =
+        if found.for_all_parameters { ", for all parameter values" } else { " at the values in the file" };
     html! {
         p {
-            "Unobservable, generically, in " (name) (scope) ": "
+            "Unobservable directions (generically; " (name) (scope) "): "
             @for (place, field) in found.fields.iter().enumerate() {
                 @if place > 0 { "; " }
                 span.f { (field_formula(field)) }

@@ -11,6 +11,7 @@ use palmistry_rank::observability::{NamedCoordinate, Spectrum, Stop};
 use palmistry_rank::sweep::{BranchAnswer, Certainty, Digits, NoDigits, RankAnswer, SweepReport};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
+use std::fmt::Write;
 
 fn histogram_json(histogram: &BTreeMap<usize, u64>) -> Value {
     histogram
@@ -214,7 +215,9 @@ fn directions_text(report: &SweepReport, out: &mut String) {
             ),
             out,
         );
-        item(&format!("  at {}: {}", place_text(&direction.at), direction_text(direction)), out);
+        item(&format!("  at {}:", place_text(&direction.at)), out);
+        // on one line: it is to be copied
+        let _ = writeln!(out, "    {}", direction_text(direction));
     }
 }
 

@@ -68,7 +68,8 @@ pub(super) fn motions_text(found: &UnseenMotions, sampled: bool, out: &mut Strin
         let _ = writeln!(out, "identifiable functions of the unobservable unknowns{scope}:");
     }
     for function in &found.functions {
-        item(&format!("{}  (proved, {})", function.text, certainty(function.log2_error)), out);
+        // a formula is on one line, however long: it is to be copied
+        let _ = writeln!(out, "  {}  (proved, {})", function.text, certainty(function.log2_error));
     }
     if found.functions_missing > 0 {
         let more = counted(found.functions_missing, "more function");
@@ -77,7 +78,7 @@ pub(super) fn motions_text(found: &UnseenMotions, sampled: bool, out: &mut Strin
     let directions = if found.directions() == 1 { "direction" } else { "directions" };
     let _ = writeln!(out, "unobservable {directions}{scope}:");
     for field in &found.fields {
-        item(&format!("{}  (proved, {})", unseen_field_text(field), certainty(field.log2_error)), out);
+        let _ = writeln!(out, "  {}  (proved, {})", unseen_field_text(field), certainty(field.log2_error));
     }
     if found.fields_missing > 0 {
         let below = if sampled { ": below each is shown at one state" } else { "" };
