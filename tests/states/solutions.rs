@@ -147,8 +147,8 @@ fn the_command_tells_each_unknown() {
         .unwrap();
     let file = file.to_str().unwrap();
     let text = String::from_utf8(palmistry(&["rank", file, "--global"]).stdout).unwrap();
-    assert!(text.contains("2 over the complex numbers: proved, by k -> -k"), "{text}");
-    assert!(text.contains("1, globally observable: proved"), "{text}");
+    assert!(text.contains("2 solutions over the complex numbers: proved, by k -> -k"), "{text}");
+    assert!(text.contains("globally observable   1 solution: proved"), "{text}");
     let found = json(&palmistry(&["rank", file, "--global", "--json"]));
     let values: Vec<_> =
         found["unknowns"].as_array().unwrap().iter().map(|of_it| of_it["values"].clone()).collect();

@@ -163,7 +163,7 @@ fn what_is_not_possible_is_said_with_its_reason() {
     assert!(reason(Number::Residue, Derivative::Graph).contains("no exact value"));
     for derivative in [Derivative::Series, Derivative::Duals, Derivative::Forward] {
         let why = reason(Number::Double, derivative);
-        assert!(why.contains("row 2") && why.contains("no differential of a word"), "{why}");
+        assert!(why.contains("row 2") && why.contains("no differential of a Lie derivative"), "{why}");
     }
     assert!(digits(&found, Number::Double, Derivative::Graph).1 > 14.0);
     assert!(digits(&found, Number::Interval, Derivative::Graph).1 > 13.0);

@@ -284,6 +284,9 @@ impl Misfit<'_> {
 /// The probability that the least of some independent probabilities is no larger (L. H. C. Tippett, The Methods of Statistics, 1931).
 pub(super) fn least_of<const N: usize>(all: [Option<f64>; N]) -> f64 {
     let count = all.iter().flatten().count();
+    if count == 0 {
+        return 1.0;
+    }
     // one that is no number is of residuals that are none
     let least = all.into_iter().flatten().map(|one| if one.is_nan() { 0.0 } else { one }).fold(1.0, f64::min);
     -(count as f64 * (-least).ln_1p()).exp_m1()
@@ -391,7 +394,7 @@ mod tests {
         close(least_of([Some(0.1), None, Some(1.0)]), 0.19);
         close(least_of([None, Some(0.1)]), 0.1);
         close(least_of([Some(0.5), Some(f64::NAN)]), 0.0);
-        close(least_of([None, None]), 0.0);
+        close(least_of([None, None]), 1.0);
         // where 1 - (1 - p)^2 would round to nothing
         assert_eq!(least_of([Some(1e-30), Some(1.0)]), 2e-30);
     }

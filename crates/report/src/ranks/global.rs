@@ -2,7 +2,6 @@
 
 use super::generic::unknown_verdict;
 use crate::claims::outcomes::error_bound;
-use crate::layout::item;
 use crate::names::{plain_number, values_json, values_text};
 use palmistry_io::foreign::shown;
 use palmistry_lang::UnknownKind;
@@ -147,7 +146,7 @@ pub fn global_text(answer: &GlobalAnswer) -> String {
     for of_it in &found.unknowns {
         let (name, verdict) = (&of_it.name, strongest(of_it));
         let rest = in_words(of_it, found.orders_are_open);
-        item(&format!("{name:<names$}  {verdict:<verdicts$}  {rest}"), &mut out);
+        let _ = writeln!(out, "  {name:<names$}  {verdict:<verdicts$}  {rest}");
     }
     if let Some(second) = &found.second {
         let _ = writeln!(
