@@ -1,12 +1,12 @@
-//! A unicycle that measures its distance to beacons: with one beacon there is a direction of the state space that nothing
-//! shows, a turn of everything about the beacon, `(-y, x, 1)`; a second beacon shows it. With `cargo run --example unicycle`:
+//! A unicycle that measures its distance to beacons: with one beacon one direction of the state space is unobservable, the
+//! turn of everything about the beacon, `(-y, x, 1)`; with a second one all states are observable. With `cargo run --example unicycle`:
 //!
 //! ```text
-//! 1 beacon(s): rank 2 of 3 at almost all states, whatever is driven
+//! 1 beacon(s): rank 2 of 3 generically, whatever is driven
 //!   by q0, Ldrive q0
 //!   at drawn states {2: 5000}, 5000 certified
-//!   not seen at x = 0.296, y = -0.585, theta = 2.908: 0.5851 x + 0.2963 y + theta
-//! 2 beacon(s): rank 3 of 3 at almost all states, whatever is driven
+//!   unobservable at x = 0.296, y = -0.585, theta = 2.908: 0.5851 x + 0.2963 y + theta
+//! 2 beacon(s): rank 3 of 3 generically, whatever is driven
 //!   by q0, q1, Ldrive q0
 //!   at drawn states {3: 5000}, 5000 certified
 //! ```
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             answer_rank(&mut robot(beacons)?, &RankQuestion { samples: 5000, ..RankQuestion::default() })?;
         let found = &answer.branches[0];
         println!(
-            "{} beacon(s): rank {} of {} at almost all states{}",
+            "{} beacon(s): rank {} of {} generically{}",
             beacons.len(),
             found.generic_rank,
             answer.dimension,
@@ -60,7 +60,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for unseen in &found.full.unseen {
             let at: Vec<String> =
                 unseen.at.iter().map(|at| format!("{} = {:.3}", at.name, at.value)).collect();
-            println!("  not seen at {}: {}", at.join(", "), unseen.example);
+            println!("  unobservable at {}: {}", at.join(", "), unseen.example);
         }
     }
     Ok(())

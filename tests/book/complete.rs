@@ -187,6 +187,59 @@ fn every_test_file_is_on_the_map() {
     assert!(gone.is_empty(), "{gone:?} are gone");
 }
 
+/// What the book names of the program's text is there, and a length that it gives in lines is right to a tenth: a file that has
+/// moved, or has grown, is not where a reader should look for what has to be trusted.
+#[test]
+fn files_of_the_program_are_where_the_book_says() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let pages = std::fs::read_dir(root.join("book/src")).expect("the book");
+    let pages = pages.map(|entry| entry.expect("an entry").path());
+    // what is published has the other crates beside it and not in it
+    let is_workspace = root.join("crates").exists();
+    let (mut wrong, mut lengths) = (Vec::new(), 0);
+    for page in pages.filter(|path| path.extension().is_some_and(|ending| ending == "md")) {
+        let text = std::fs::read_to_string(&page).expect("a page");
+        let pieces: Vec<&str> = text.split('`').collect();
+        for pair in pieces.windows(2) {
+            let [path, after] = pair else { continue };
+            let is_path = (path.starts_with("src/") || path.starts_with("crates/") && is_workspace)
+                && path.chars().all(|c| c.is_ascii_alphanumeric() || "/_.-".contains(c));
+            if !is_path {
+                continue;
+            }
+            if !root.join(path).exists() {
+                wrong.push(format!("{}: '{path}' is not there", page.display()));
+                continue;
+            }
+            let Some((digits, _)) = after.strip_prefix(" (").and_then(|rest| rest.split_once(')')) else {
+                continue;
+            };
+            let Ok(said) = digits.parse::<usize>() else { continue };
+            lengths += 1;
+            let found = lines_without_tests(&root.join(path));
+            if said.abs_diff(found) > 10 + found / 10 {
+                wrong.push(format!("{}: '{path}' has {found} lines, not {said}", page.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(lengths > 30 || !is_workspace, "{lengths} lengths were read");
+}
+
+/// The lines of a file before its tests, or of all files of a folder that are no tests.
+fn lines_without_tests(path: &std::path::Path) -> usize {
+    if path.is_dir() {
+        let entries = std::fs::read_dir(path).expect("a folder").map(|entry| entry.expect("an entry").path());
+        let is_source = |inner: &std::path::PathBuf| {
+            let is_test = inner.file_stem().is_some_and(|name| name == "tests");
+            !is_test && (inner.is_dir() || inner.extension().is_some_and(|ending| ending == "rs"))
+        };
+        return entries.filter(is_source).map(|inner| lines_without_tests(&inner)).sum();
+    }
+    let text = std::fs::read_to_string(path).expect("a file");
+    text.lines().take_while(|line| !line.starts_with("#[cfg(test)]")).count()
+}
+
 /// Each chapter stands in the summary, each link leads somewhere, and the README stays short.
 #[test]
 fn links_lead_somewhere() {
