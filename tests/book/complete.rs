@@ -187,7 +187,7 @@ fn every_test_file_is_on_the_map() {
     assert!(gone.is_empty(), "{gone:?} are gone");
 }
 
-/// What the book names of the program's text is there, and a length that it gives in lines is right to a tenth: a file that has
+/// What the book names of the program's text is there, and a length in lines, rounded to tens, is right to a tenth: a file that has
 /// moved, or has grown, is not where a reader should look for what has to be trusted.
 #[test]
 fn files_of_the_program_are_where_the_book_says() {
