@@ -1,5 +1,8 @@
 //! Puts the papers under `proofs/` into the program, so that an installed one has them: writes a list of their files, of which
 //! the compiler reads each. Only the program depends on them and not the library, so that an edit of a proof compiles little.
+//!
+//! And what `palmistry --version --verbose` says of this build. The commit is the one that a release names (`PALMISTRY_COMMIT`), or that a
+//! packed crate carries with it: a tree that is being worked on has none, and is not built again for each new one.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -29,6 +32,28 @@ fn main() {
     list.push_str("]\n");
     let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("cargo sets it")).join("papers.rs");
     std::fs::write(out, list).expect("the list of papers can be written");
+    say_what_is_built(&root);
+}
+
+fn say_what_is_built(papers: &Path) {
+    let variable = |name: &str| std::env::var(name).ok();
+    println!("cargo::rerun-if-env-changed=PALMISTRY_COMMIT");
+    let packed = papers.with_file_name(".cargo_vcs_info.json");
+    let of_package = || {
+        let text = std::fs::read_to_string(&packed).ok()?;
+        let (_, rest) = text.split_once("\"sha1\": \"")?;
+        Some(rest.split_once('"')?.0.to_owned())
+    };
+    let commit = variable("PALMISTRY_COMMIT").or_else(of_package);
+    let compiler = variable("RUSTC").and_then(|rustc| {
+        let output = std::process::Command::new(rustc).arg("--version").output().ok()?;
+        String::from_utf8(output.stdout).ok()
+    });
+    let unknown = || "not known".to_owned();
+    let commit = commit.unwrap_or_else(|| "not recorded: built from a working tree".to_owned());
+    println!("cargo::rustc-env=PALMISTRY_COMMIT={}", commit.trim());
+    println!("cargo::rustc-env=PALMISTRY_COMPILER={}", compiler.unwrap_or_else(unknown).trim());
+    println!("cargo::rustc-env=PALMISTRY_TARGET={}", variable("TARGET").unwrap_or_else(unknown));
 }
 
 fn entries(folder: &Path) -> Vec<PathBuf> {

@@ -11,6 +11,7 @@ mod certify;
 mod check;
 mod claims;
 mod completions;
+mod demo;
 mod eval;
 mod fmt;
 mod import;
@@ -37,6 +38,7 @@ mod terminal;
 mod threads;
 mod trade;
 mod verify;
+mod version;
 mod watch;
 
 use clap::{CommandFactory, Parser, Subcommand};
@@ -50,10 +52,11 @@ use std::process::ExitCode;
 /// Write down a control system and what you claim of it in a .proof file (the book has the grammar); palmistry says,
 /// claim by claim, proved, refuted (with a witness) or undecided.
 #[derive(Parser)]
-#[command(name = "palmistry", version, max_term_width = 110)]
+#[command(name = "palmistry", version, disable_version_flag = true, max_term_width = 110)]
 #[command(
     after_help = "Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written, 3 cut off by a signal before the end.",
     after_long_help = "Where to begin:
+  palmistry demo                            four questions and their answers on a system of five lines
   palmistry new mypaper                     a folder with a small paper that proves, a comment on each line
   palmistry check mysystem.proof            is it a proof file? every mistake, each at its place
   palmistry prove mysystem.proof --watch    decide its claims, and again whenever it is changed
@@ -66,6 +69,12 @@ Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used 
 struct Cli {
     #[command(subcommand)]
     verb: Option<Verb>,
+    /// Print the version; with --verbose what it was built from and what it uses here.
+    #[arg(short = 'V', long)]
+    version: bool,
+    /// With --version: commit, compiler, features, number types, processor.
+    #[arg(long, requires = "version")]
+    verbose: bool,
 }
 
 #[derive(Subcommand)]
@@ -84,6 +93,7 @@ enum Verb {
     Poses(poses::Poses),
     Import(import::Import),
     New(new::New),
+    Demo(demo::Demo),
     Fmt(fmt::Fmt),
     Lsp(lsp::Lsp),
     Completions(completions::Completions),
@@ -137,6 +147,9 @@ pub fn run() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return not_understood(&error),
     };
+    if cli.version {
+        return asked_for(&version::text(cli.verbose));
+    }
     let Some(verb) = cli.verb else {
         // who says nothing asks what there is to say
         let help = Cli::command().render_long_help().to_string();
@@ -181,6 +194,7 @@ impl Verb {
             Verb::Poses(verb) => verb.json,
             Verb::Import(verb) => verb.json,
             Verb::New(verb) => verb.json,
+            Verb::Demo(verb) => verb.json,
             Verb::Fmt(verb) => verb.json,
             Verb::Lsp(_) | Verb::Completions(_) | Verb::Man(_) => false,
         })
@@ -214,6 +228,7 @@ impl Verb {
             Verb::Poses(verb) => verb.run(),
             Verb::Import(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::New(verb) => verb.run(),
+            Verb::Demo(verb) => verb.run(),
             Verb::Fmt(verb) => verb.run(),
             Verb::Lsp(verb) => verb.run(),
             Verb::Completions(verb) => verb.run(),

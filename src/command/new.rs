@@ -9,8 +9,11 @@ use serde_json::json;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+/// The files of a folder: names and texts.
+pub(super) type Folder<'a> = &'a [(&'a str, &'a str)];
+
 /// The files of a new paper.
-const TEMPLATE: [(&str, &str); 2] = [
+const TEMPLATE: Folder<'_> = &[
     (MANIFEST, include_str!("template/paper.toml")),
     ("pendulum.proof", include_str!("template/pendulum.proof")),
 ];
@@ -35,7 +38,7 @@ impl New {
     pub fn run(self) -> miette::Result<Status> {
         let folder = &self.folder;
         refuse_taken(folder)?;
-        self.fill(folder).map_err(|error| {
+        fill(folder, TEMPLATE).map_err(|error| {
             Unusable::report(format!("cannot make {}: {error}", shown_path(folder)), "choose another place")
         })?;
         let paths: Vec<PathBuf> = TEMPLATE.iter().map(|(name, _)| folder.join(name)).collect();
@@ -44,38 +47,38 @@ impl New {
         let object = json!({ "folder": name_of(folder), "files": paths.iter().map(|path| name_of(path)).collect::<Vec<_>>() });
         Files::default().print(Form::of(self.json), object, words, Status::AsExpected)
     }
+}
 
-    /// Fills a folder beside the one that is wanted, and moves it there: it is whole or not there.
-    fn fill(&self, folder: &Path) -> std::io::Result<()> {
-        let parent = match folder.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
-        std::fs::create_dir_all(parent)?;
-        let aside = tempfile::Builder::new().prefix(".new-paper-").tempdir_in(parent)?;
-        for (name, text) in TEMPLATE {
-            std::fs::write(aside.path().join(name), text)?;
-        }
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // a folder for passing things is closed to others, and this one is not
-            std::fs::set_permissions(aside.path(), std::fs::Permissions::from_mode(0o755))?;
-        }
-        // an empty folder gives way
-        match std::fs::remove_dir(folder) {
-            Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
-            _ => {}
-        }
-        std::fs::rename(aside.path(), folder)?;
-        // it has gone to its place: there is nothing left to remove
-        let _ = aside.keep();
-        Ok(())
+/// Fills a folder beside the one that is wanted, and moves it there: it is whole or not there.
+pub(super) fn fill(folder: &Path, files: Folder<'_>) -> std::io::Result<()> {
+    let parent = match folder.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    std::fs::create_dir_all(parent)?;
+    let aside = tempfile::Builder::new().prefix(".new-paper-").tempdir_in(parent)?;
+    for (name, text) in files {
+        std::fs::write(aside.path().join(name), text)?;
     }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // a folder for passing things is closed to others, and this one is not
+        std::fs::set_permissions(aside.path(), std::fs::Permissions::from_mode(0o755))?;
+    }
+    // an empty folder gives way
+    match std::fs::remove_dir(folder) {
+        Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    std::fs::rename(aside.path(), folder)?;
+    // it has gone to its place: there is nothing left to remove
+    let _ = aside.keep();
+    Ok(())
 }
 
 /// Refuses a place at which something is.
-fn refuse_taken(folder: &Path) -> miette::Result<()> {
+pub(super) fn refuse_taken(folder: &Path) -> miette::Result<()> {
     let taken = |what: &str| {
         let message = format!("{} {what}", shown_path(folder));
         Err(Unusable::report(message, "name a folder that is not there yet; nothing was written"))

@@ -2,6 +2,7 @@
 //! or scan, the scanner's, a convention, loose wording. And errors that follow from others are not counted twice.
 
 use crate::common::{folder, json, palmistry, write};
+use crate::derivation::claims_of_the_thesis;
 use palmistry::paper::{Numbering, Paper};
 use palmistry::report::{counts_text, errata_markdown};
 use palmistry::{Outcome, System, decide_all};
@@ -177,13 +178,12 @@ fn an_equation_has_the_word_of_its_own_entry() {
 /// text shows is never called proved.
 #[test]
 fn the_words_of_the_thesis() {
-    let found = json(&palmistry(&["prove", "proofs/moll2002", "--json"]));
     // papers of their own in the folder are not the thesis
     let is_of_the_thesis = |claim: &&serde_json::Value| {
         let file = claim["file"].as_str().unwrap();
         !file.contains("moll2002/constraint/") && !file.contains("moll2002/space/")
     };
-    let claims: Vec<_> = found["claims"].as_array().unwrap().iter().filter(is_of_the_thesis).collect();
+    let claims: Vec<_> = claims_of_the_thesis().into_iter().filter(is_of_the_thesis).collect();
     let mut words: BTreeMap<&str, usize> = BTreeMap::new();
     for claim in &claims {
         let word = claim["verdict"].as_str().unwrap();

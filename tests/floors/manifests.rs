@@ -37,13 +37,15 @@ fn under(name: &str, known: &BTreeMap<String, BTreeSet<String>>) -> BTreeSet<Str
 }
 
 /// The invariants of ARCHITECTURE.md: of each crate, what it must not be built on, however far below.
-const APART: [(&str, &[&str]); 7] = [
+const APART: [(&str, &[&str]); 8] = [
     // what checks a verdict shares nothing with what found it
     ("checker", &["inequality", "rank", "prove", "observe", "scenes"]),
     // real bodies are a second witness for the physics: they read no proof file
     ("bodies", &["lang", "rank", "prove", "observe"]),
     // numbers and expressions know no file and no system
     ("math", &["io", "lang"]),
+    // what is counted knows nothing of what it counts
+    ("budget", &["io", "math"]),
     // observers know systems and signals, and neither ranks nor palms
     ("observe", &["rank", "prove", "bodies"]),
     // theorems take nothing from touch

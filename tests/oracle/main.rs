@@ -25,6 +25,7 @@ mod inequalities;
 mod laws;
 mod library;
 mod number;
+mod one_variable;
 mod point;
 mod rank;
 mod rank_sets;

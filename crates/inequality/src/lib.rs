@@ -1,8 +1,9 @@
 //! Does an inequality hold wherever others do?
 //!
-//! Three ways, one after the other. Signs that can be read off ([`palmistry_math::expression::sign`]); the signs of polynomial
-//! factors, by their coefficients or as sums of squares (`factors`, `squares`), for all states; and branch and bound in
-//! interval arithmetic on a box (`boxes`), which also proposes states at which the inequality fails.
+//! Four ways, one after the other. Signs that can be read off ([`palmistry_math::expression::sign`]); the signs of polynomial
+//! factors, by their coefficients or as sums of squares (`factors`, `squares`), for all states; in one variable the zeros of all
+//! polynomials (`line`), and of degree two the matrix (`quadric`), which decide completely and propose states at which the
+//! inequality fails; and branch and bound in interval arithmetic on a box (`boxes`), which proposes such states too.
 //!
 //! This module knows expressions and their domains, and nothing of claims or systems.
 
@@ -13,6 +14,8 @@ mod boxes;
 mod crossing;
 mod domain_intervals;
 mod factors;
+mod line;
+mod quadric;
 mod reading;
 mod semidefinite;
 mod space;
@@ -25,6 +28,8 @@ pub use bounds::{Bound, Bounds, SymbolBounds, bounds};
 pub use boxes::Proposed;
 #[doc(hidden)]
 pub use crossing::vanishes_somewhere;
+#[doc(hidden)]
+pub use line::{Irrational, IrrationalPlace};
 
 use bounds::known_signs;
 use palmistry_math::expression::{Graph, Guard, Need, NodeId, Sign, Symbol, sign_given};
@@ -63,6 +68,8 @@ pub enum InequalityAnswer {
     Holds(Argument),
     /// A proposed state was taken as a counterexample.
     Fails,
+    /// It fails at this irrational value of a symbol, where all premises hold.
+    FailsAt(IrrationalPlace),
     /// It is not decided.
     Open(Open),
 }
@@ -72,6 +79,10 @@ pub enum InequalityAnswer {
 pub enum Argument {
     /// The signs of factors, some of them sums of squares.
     Signs,
+    /// All zeros of the polynomials in one variable, between which nothing changes.
+    Zeros,
+    /// The matrix of a polynomial of degree two, by elimination.
+    Matrix,
     /// Interval arithmetic on so many boxes, and whether it is met with equality somewhere: that derivatives vanish there was
     /// found by exact arithmetic at random points, and may be wrong with a probability below 2^-100.
     Boxes {
@@ -108,6 +119,9 @@ pub fn decide(
     if by_signs(graph, goal, premises, &bounds, is_angle) {
         return InequalityAnswer::Holds(Argument::Signs);
     }
+    if let Some(answer) = completely(graph, goal, premises, is_angle, &bounds, refutes) {
+        return answer;
+    }
     let question = boxes::Question {
         goal,
         assumed: given.assumed,
@@ -133,6 +147,41 @@ pub fn holds_by_signs(
     let bounds = bounds(graph, &all);
     let premises = Premises { assumed: &all, equations: given.equations };
     by_signs(graph, goal, premises, &bounds, is_angle)
+        || completely(graph, goal, premises, is_angle, &bounds, &mut |_, _| false)
+            .is_some_and(|answer| matches!(answer, InequalityAnswer::Holds(_)))
+}
+
+/// What the ways say that decide completely, in one variable and in degree two.
+fn completely(
+    graph: &mut Graph,
+    goal: Guard,
+    premises: Premises<'_>,
+    is_angle: &dyn Fn(Symbol) -> bool,
+    bounds: &Bounds,
+    refutes: &mut dyn FnMut(&mut Graph, &Proposed) -> bool,
+) -> Option<InequalityAnswer> {
+    let signs = known_signs(graph, premises.assumed, bounds);
+    let known = Known { bounds, signs: &signs };
+    match line::on_a_line(graph, goal, premises, is_angle, known) {
+        Some(line::OnALine::Holds) => return Some(InequalityAnswer::Holds(Argument::Zeros)),
+        Some(line::OnALine::Fails(places)) => {
+            for place in places {
+                match place {
+                    line::Place::At(place) => return Some(InequalityAnswer::FailsAt(place)),
+                    line::Place::Between(state) if refutes(graph, &state) => {
+                        return Some(InequalityAnswer::Fails);
+                    }
+                    line::Place::Between(_) => {}
+                }
+            }
+        }
+        None => {}
+    }
+    match quadric::of_degree_two(graph, goal, is_angle, known) {
+        Some(quadric::Quadric::Holds) => Some(InequalityAnswer::Holds(Argument::Matrix)),
+        Some(quadric::Quadric::Fails(state)) if refutes(graph, &state) => Some(InequalityAnswer::Fails),
+        _ => None,
+    }
 }
 
 /// Whether a sign is what is needed.

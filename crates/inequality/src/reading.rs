@@ -103,6 +103,11 @@ impl Reading {
         }
     }
 
+    /// What the variables of its polynomials stand for.
+    pub fn inputs(&self) -> &[Input] {
+        self.program.inputs()
+    }
+
     /// What is read. `None` where polynomials do not suffice.
     pub fn polynomials(&self, graph: &mut Graph, known: Known<'_>) -> Option<Polynomials> {
         let Reading { assumed, equations, .. } = *self;

@@ -5,6 +5,7 @@
 //! section 11.6): the logarithms of the determinants of `G(y) - t I` keep the eigenvalues above `t`, which is pushed up.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
+use palmistry_budget as budget;
 use palmistry_math::number::MOST_ITERATIONS;
 
 /// A symmetric block `start + sum_k y_k directions[k]`; a direction is a list of entries, each with its mirror image.
@@ -105,6 +106,8 @@ fn derivatives(blocks: &[Block], y: &[f64], t: f64, push: f64) -> Option<(DVecto
     let mut hessian = DMatrix::zeros(n + 1, n + 1);
     gradient[n] = -push;
     for block in blocks {
+        let terms: usize = block.directions.iter().map(Vec::len).sum();
+        budget::steps(block.start.nrows().pow(3) + terms * terms);
         let inverse = Cholesky::new(shifted(block, y, t))?.inverse();
         let square = &inverse * &inverse;
         gradient[n] += inverse.trace();

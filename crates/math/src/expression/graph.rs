@@ -4,7 +4,9 @@
 //! recursion, so no expression is too deep.
 
 use crate::number::{Arithmetic, Function, Rationals, Refusal};
+use dashu::base::BitTest;
 use dashu::rational::RBig;
+use palmistry_budget as budget;
 use std::collections::{HashMap, HashSet};
 
 /// A coordinate, a parameter, or any other name that stands for a number.
@@ -142,6 +144,7 @@ impl Graph {
     }
 
     fn insert(&mut self, node: Node) -> NodeId {
+        budget::steps(16);
         if let Some(known) = self.places.get(&node) {
             return *known;
         }
@@ -155,6 +158,8 @@ impl Graph {
             Node::Apply(function, a) => outside(function, a),
             _ => false,
         } || node.operands().any(|operand| self.undefined[operand.0 as usize]);
+        budget::nodes(1);
+        budget::steps(64);
         let id = NodeId(self.nodes.len() as u32);
         self.nodes.push(node);
         self.undefined.push(undefined);
@@ -196,6 +201,7 @@ impl Graph {
         let index = match self.constant_places.get(&value) {
             Some(index) => *index,
             None => {
+                budget::bytes((value.numerator().bit_len() + value.denominator().bit_len()) / 8);
                 let index = self.constants.len() as u32;
                 self.constants.push(value.clone());
                 self.constant_places.insert(value, index);

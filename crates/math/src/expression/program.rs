@@ -5,6 +5,7 @@ use super::graph::{Graph, Node, NodeId, Symbol};
 use super::input::Input;
 use crate::number::{Arithmetic, Function, Refusal};
 use dashu::rational::RBig;
+use palmistry_budget as budget;
 use std::collections::HashMap;
 
 #[derive(Clone, Copy, Debug)]
@@ -234,6 +235,7 @@ impl<A: Arithmetic> Loaded<'_, A> {
         registers: &'r mut Vec<A::Number>,
     ) -> Result<impl Iterator<Item = &'r A::Number>, Failure> {
         let arithmetic = &self.arithmetic;
+        budget::steps(self.program.operations.len());
         registers.clear();
         for (operation, &node) in self.program.operations.iter().zip(&self.program.origins) {
             let at = |index: u32| &registers[index as usize];

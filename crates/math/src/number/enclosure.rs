@@ -11,6 +11,7 @@ use dashu::float::round::mode::{Down, Up};
 use dashu::float::{Context, FBig, FpError, Repr};
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
+use palmistry_budget as budget;
 
 type Endpoint = Repr<2>;
 
@@ -194,6 +195,8 @@ impl Enclosures {
     fn endpoints(low: Rounded<Down>, high: Rounded<Up>) -> Result<Enclosure, Refusal> {
         let (low, high) =
             (low.map_err(refusal)?.value().into_repr(), high.map_err(refusal)?.value().into_repr());
+        let words = low.significand().bit_len() / 64 + 1;
+        budget::steps(4 * words * words);
         let small = |e: &Endpoint| e.is_finite() && e.exponent().unsigned_abs() < 1 << LARGEST_ENDPOINT;
         if small(&low) && small(&high) { Ok(Enclosure { low, high }) } else { Err(Refusal::TooLarge) }
     }

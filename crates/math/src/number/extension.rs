@@ -7,6 +7,7 @@
 
 use super::{Arithmetic, Function, PrimeField, Refusal};
 use dashu::rational::RBig;
+use palmistry_budget as budget;
 
 /// A prime field `F`, extended to `F[y]/(m(y))` and that by square roots.
 #[derive(Clone, Debug)]
@@ -81,6 +82,7 @@ impl Extension {
     }
 
     fn product(&self, a: &[u64], b: &[u64]) -> Vec<u64> {
+        budget::steps(a.len() * b.len());
         let (short, long) = if a.len() <= b.len() { (a, b) } else { (b, a) };
         let times = |x: &u64, y: &u64| self.field.mul(x, y).unwrap_or(0);
         match (short, long.len()) {

@@ -9,6 +9,7 @@ use super::polynomial::Ring;
 use super::{Arithmetic, Function, Refusal};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
+use palmistry_budget as budget;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
 
@@ -55,6 +56,8 @@ impl<R: Ring> Fractions<R> {
 
     fn place(&self, value: R) -> u32 {
         let mut table = self.table.borrow_mut();
+        // most of them differ in their first terms
+        budget::steps(table.len() / 8);
         if let Some(known) = table.iter().position(|other| other.is_same(&value)) {
             return known as u32;
         }
@@ -85,6 +88,8 @@ impl<R: Ring> Fractions<R> {
     }
 
     fn reduced(mut top: Factors, mut bottom: Factors) -> Fraction {
+        // each of them was looked at several times until here
+        budget::steps(16 * (1 + top.len() + bottom.len()));
         let common = meet(&top, &bottom);
         remove(&mut top, &common);
         remove(&mut bottom, &common);

@@ -3,6 +3,7 @@
 
 use super::{Arithmetic, Function, Refusal};
 use dashu::rational::RBig;
+use palmistry_budget as budget;
 
 /// `e^valuation * (c[0] + c[1] e + ... + O(e^n))`, `n` the number of coefficients; `c[0]` is not zero.
 ///
@@ -97,6 +98,7 @@ impl<A: Arithmetic> Arithmetic for Laurent<A> {
             return Ok(Series { valuation: i32::MAX, coefficients: Vec::new() });
         }
         let length = a.coefficients.len().min(b.coefficients.len());
+        budget::steps(length * length);
         let mut coefficients = Vec::with_capacity(length);
         for n in 0..length {
             let mut sum = self.base.mul(&a.coefficients[0], &b.coefficients[n])?;

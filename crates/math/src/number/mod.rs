@@ -26,6 +26,7 @@ mod laurent;
 pub mod polynomial;
 mod rational;
 mod real;
+pub mod real_roots;
 mod residue;
 mod rung;
 mod sine;

@@ -1,13 +1,17 @@
 //! Polynomials in several variables with integer coefficients, fully expanded: a sum of monomials, as a
 //! computer-algebra system prints it. And what a [`Ring`] has to offer to stand above and below a fraction bar.
 
-use dashu::base::{Gcd, Sign};
+use dashu::base::{BitTest, Gcd, Sign};
 use dashu::integer::{IBig, UBig};
+use palmistry_budget as budget;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 /// The most variables that a polynomial may have.
 pub const LARGEST_ARITY: usize = 24;
+
+/// What a pair of monomials takes, in steps: as long as so many products of residues.
+const PAIR: usize = 16;
 
 /// Products of more pairs of monomials than this are not multiplied out.
 const MOST_PAIRS: usize = 1 << 24;
@@ -82,6 +86,11 @@ impl Polynomial {
         if negative { -IBig::from(magnitude) } else { IBig::from(magnitude) }
     }
 
+    /// The length of the longest coefficient in words, at least one.
+    fn words(&self) -> usize {
+        self.terms.values().map(|coefficient| coefficient.bit_len() / 64 + 1).max().unwrap_or(1)
+    }
+
     fn insert(&mut self, exponents: Exponents, coefficient: IBig) {
         match self.terms.entry(exponents) {
             Entry::Vacant(place) if !coefficient.is_zero() => {
@@ -122,6 +131,7 @@ impl Polynomial {
 
     /// The polynomial as one in a single variable: its coefficients, which are free of that variable, by their power.
     pub fn coefficients_in(&self, variable: usize) -> BTreeMap<u8, Polynomial> {
+        budget::steps(PAIR * self.len());
         let mut parts: BTreeMap<u8, Polynomial> = BTreeMap::new();
         for (exponents, coefficient) in &self.terms {
             let mut rest = *exponents;
@@ -160,6 +170,7 @@ impl Polynomial {
         let (mut rest, mut quotient) = (self.clone(), Polynomial::default());
         while let Some((exponents, coefficient)) = rest.terms.iter().next_back() {
             let difference = quotient_of(exponents, lead)?;
+            budget::steps(PAIR * divisor.len());
             let factor = coefficient / lead_coefficient;
             if &(&factor * lead_coefficient) != coefficient {
                 return None;
@@ -186,6 +197,7 @@ impl Ring for Polynomial {
 
     fn add(&self, other: &Self) -> Self {
         let (long, short) = if self.len() >= other.len() { (self, other) } else { (other, self) };
+        budget::steps(PAIR * (long.len() + short.len()));
         let mut sum = long.clone();
         for (exponents, coefficient) in &short.terms {
             sum.insert(*exponents, coefficient.clone());
@@ -197,6 +209,7 @@ impl Ring for Polynomial {
         if self.len().saturating_mul(other.len()) > MOST_PAIRS {
             return None;
         }
+        budget::steps(PAIR * self.len() * other.len() * self.words() * other.words());
         let mut product = std::collections::HashMap::new();
         for (left, a) in &self.terms {
             for (right, b) in &other.terms {
@@ -236,7 +249,6 @@ pub struct Size {
 
 impl Ring for Size {
     fn integer(value: &IBig) -> Self {
-        use dashu::base::BitTest;
         Size { degree: 0.0, bits: value.bit_len() as f64 }
     }
     fn add(&self, other: &Self) -> Self {

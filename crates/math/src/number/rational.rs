@@ -4,6 +4,7 @@ use super::{Arithmetic, Function, Refusal};
 use dashu::base::{BitTest, SquareRoot};
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
+use palmistry_budget as budget;
 
 /// The field of rational numbers, with a bound on how long a number may become.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +22,9 @@ impl Default for Rationals {
 
 impl Rationals {
     fn bounded(&self, value: RBig) -> Result<RBig, Refusal> {
+        // to cancel what numerator and denominator share takes as long as to multiply them
+        let words = (value.numerator().bit_len() + value.denominator().bit_len()) / 64;
+        budget::steps(words * words / 4);
         if value.numerator().bit_len() > self.bits || value.denominator().bit_len() > self.bits {
             Err(Refusal::TooLarge)
         } else {

@@ -9,6 +9,7 @@
 use super::{Arithmetic, Function, Refusal};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
+use palmistry_budget as budget;
 use rand::{Rng, RngExt};
 
 /// The integers modulo a prime `p`, `2^61 < p < 2^62`. A number is `x * 2^64 mod p`, below `p`.
@@ -255,6 +256,8 @@ fn is_prime(n: u64) -> bool {
     if n < 2 || BASES.iter().any(|b| n.is_multiple_of(*b)) {
         return BASES.contains(&n);
     }
+    // so many products of each base
+    budget::steps(BASES.len() * 256);
     let times = |a: u64, b: u64| (u128::from(a) * u128::from(b) % u128::from(n)) as u64;
     let twos = (n - 1).trailing_zeros();
     let odd = (n - 1) >> twos;

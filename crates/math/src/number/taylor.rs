@@ -19,6 +19,7 @@
 
 use super::{Arithmetic, Refusal};
 use dashu::rational::RBig;
+use palmistry_budget as budget;
 
 /// The coefficients of a series that are known so far; `None` is one that is zero whatever the values are, and beyond
 /// the end all are.
@@ -90,6 +91,7 @@ impl<A: Arithmetic> Recurrences<A> {
         left: &[Option<A::Number>],
         right: &[Option<A::Number>],
     ) -> Term<A::Number> {
+        budget::steps(k);
         let mut sum = None;
         for j in range {
             if let (Some(a), Some(b)) = (at(left, j), at(right, k - j)) {
@@ -108,6 +110,7 @@ impl<A: Arithmetic> Recurrences<A> {
         left: &[Option<A::Number>],
         right: &[Option<A::Number>],
     ) -> Term<A::Number> {
+        budget::steps(2 * k);
         let mut sum = None;
         for j in range {
             if let (Some(a), Some(b)) = (at(left, j), at(right, k - j)) {

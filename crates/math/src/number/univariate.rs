@@ -3,6 +3,7 @@
 use super::polynomial::Ring;
 use super::{Arithmetic, PrimeField};
 use dashu::integer::IBig;
+use palmistry_budget as budget;
 
 /// The least prime above 2^61.
 const PRIME: u64 = (1 << 61) + 15;
@@ -47,6 +48,7 @@ impl Univariate {
         let lead = f.inverse(*divisor.0.last()?)?;
         let mut rest = self.0.clone();
         let mut quotient = vec![0; (self.0.len() + 1).saturating_sub(divisor.0.len())];
+        budget::steps(quotient.len() * divisor.0.len());
         for at in (0..quotient.len()).rev() {
             let factor = f.mul(&rest[at + divisor.0.len() - 1], &lead).ok()?;
             for (i, d) in divisor.0.iter().enumerate() {
@@ -92,6 +94,7 @@ impl Ring for Univariate {
         if self.degree() + other.degree() > HIGHEST {
             return None;
         }
+        budget::steps(self.0.len() * other.0.len());
         let mut product = vec![0; self.0.len() + other.0.len() - 1];
         for (i, a) in self.0.iter().enumerate() {
             for (j, b) in other.0.iter().enumerate() {

@@ -6,6 +6,7 @@ use super::explain::{Why, explain, sampled_volume};
 use super::part::Part;
 use super::search::Search;
 use dashu::rational::RBig;
+use palmistry_budget::Share;
 use palmistry_lang::CoordinateRange;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -29,6 +30,7 @@ impl PartVolumes {
     /// What is known, after an interrupt of the largest boxes alone: of the others it is that nothing is proved on them.
     pub fn new(part: &Part, search: &Search, interrupt: &AtomicBool) -> PartVolumes {
         let cells = search.unproved();
+        let share = Share::here();
         let whys: Vec<(Why, bool)> = cells
             .par_iter()
             .enumerate()
@@ -36,7 +38,7 @@ impl PartVolumes {
                 if place >= EXPLAINED_AT_LEAST && interrupt.load(Ordering::Relaxed) {
                     return (Why::Undecided, false);
                 }
-                explain(part, cell, workspace)
+                share.carry(|| explain(part, cell, workspace))
             })
             .collect();
         let mut open: BTreeMap<(Why, bool), Volume> = BTreeMap::new();

@@ -5,6 +5,7 @@ use super::boxes::{DEEPEST, Side, Volume};
 use super::factor::{Guess, HOPE};
 use super::part::{Alternative, Part};
 use super::workspace::{BoxAtWork, Workspace};
+use palmistry_budget::Share;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -189,12 +190,13 @@ impl Search {
         let Some(queue) = self.open.get_mut(&turn.depth) else { return Ok(None) };
         let count = turn.boxes.min(queue.len()).min(usize::try_from(most).unwrap_or(usize::MAX));
         let block: Vec<Cell> = queue.drain(..count).collect();
+        let share = Share::here();
         let judged: Vec<(Cell, u128, Option<BoxJudgement>)> = block
             .into_par_iter()
             .map_init(Workspace::default, |workspace, mut cell| {
                 let known = cell.known;
                 let is_cut = interrupt.load(Ordering::Relaxed);
-                let judged = (!is_cut).then(|| judge(part, &mut cell, workspace));
+                let judged = (!is_cut).then(|| share.carry(|| judge(part, &mut cell, workspace)));
                 (cell, known, judged)
             })
             .collect();

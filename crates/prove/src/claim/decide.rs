@@ -5,7 +5,7 @@ use super::defaults::at_the_files_values;
 use super::evidence::{Kept, Nearness, nearness};
 use super::existence::{Existence, existence};
 use super::identity::{OnOneBranch, decide_nearness};
-use super::isolated::{isolated, lost};
+use super::isolated::{lost, paid};
 use super::pole::decide_pole;
 use super::question::{Question, claimed_integer, guards_of_conditions, sample_box};
 use super::solutions::{Asking, decide_solutions};
@@ -13,6 +13,7 @@ use super::terms::{OnBranch, Terms};
 use super::verdict::{Outcome, Verdict, Witness};
 use super::visible::smooth;
 use dashu::rational::RBig;
+use palmistry_budget::OF_A_QUESTION;
 use palmistry_checker::{ClaimParts, Evidence, RecordedWord, VerdictRecord, source_digest};
 use palmistry_io::UNINTERRUPTED;
 use palmistry_lang::{Basis, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line};
@@ -89,7 +90,13 @@ fn decide_apart(
     kept: Kept,
 ) -> (Outcome, Option<System>) {
     let begin = Instant::now();
-    let decided = isolated(move || {
+    let allowed = OF_A_QUESTION;
+    #[cfg(test)]
+    let allowed = match claim.id == super::isolated::IS_POOR {
+        true => palmistry_budget::Allowance { steps: 500, ..allowed },
+        false => allowed,
+    };
+    let decided = paid(allowed, move || {
         let outcome = decide_in(&mut copy, claim, seed, kept);
         (outcome, copy)
     });

@@ -138,6 +138,19 @@ pub(super) fn decide(
             let evidence = vec![Evidence::Rank(certified)];
             DecidedEverywhere { verdict: Verdict::Refuted { engine, witness }, evidence, beside: Vec::new() }
         }
+        Everywhere::RefutedAt { state, at_most, set, log2_error } => {
+            let left = if at_most == 0 { "0".to_owned() } else { format!("at most {at_most}") };
+            let right = claim.rank.to_string();
+            let witness = Witness { state, left, right, entry: None, refutation: None };
+            let chance = match log2_error.is_finite() {
+                true => format!(" (error probability below 2^{:.0})", log2_error.ceil()),
+                false => String::new(),
+            };
+            let engine = format!("exact elimination; the rank is lower where {}{chance}", set.join(", "));
+            let why = "the state is irrational, which no verdict file can hold";
+            let evidence = vec![Evidence::Unchecked(why.to_owned())];
+            DecidedEverywhere { verdict: Verdict::Refuted { engine, witness }, evidence, beside: Vec::new() }
+        }
         Everywhere::Open(why) => {
             let verdict = Verdict::undecided(why + &on_the_box(system, claim));
             DecidedEverywhere { verdict, evidence: Vec::new(), beside: Vec::new() }

@@ -8,15 +8,21 @@ use super::verdict::{Verdict, Witness};
 use super::witness::texts_of_sides;
 use dashu::rational::RBig;
 use palmistry_checker::{Doubt, Refutation};
-use palmistry_inequality::{Argument, Given, InequalityAnswer, Open, Proposed, decide, vanishes_somewhere};
+use palmistry_inequality::{
+    Argument, Given, InequalityAnswer, Irrational, IrrationalPlace, Open, Proposed, decide,
+    vanishes_somewhere,
+};
 use palmistry_lang::System;
 use palmistry_math::expression::syntax::Relation;
 use palmistry_math::expression::{
-    Guard, LOG2_ERROR, Need, NodeId, Related, Symbol, ZeroTest, expand_angles, identically_zero,
-    zero_by_relations,
+    Guard, Input, LOG2_ERROR, Need, NodeId, Program, Related, Symbol, ZeroTest, expand_angles,
+    identically_zero, zero_by_relations,
 };
-use palmistry_math::number::{rational_from_f64, rational_to_f64};
-use palmistry_rank::observability::{Coordinate, State, assumed};
+use palmistry_math::number::real_roots::RealRoot;
+use palmistry_math::number::{
+    Arithmetic, Enclosure, Enclosures, Function, rational_from_f64, rational_to_f64, round_to_decimal,
+};
+use palmistry_rank::observability::{Coordinate, NamedCoordinate, State, assumed};
 use rand::Rng;
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -28,6 +34,8 @@ const LAST: usize = 300;
 const STATES: usize = 24;
 
 const SIGNS: &str = "exact arithmetic: the signs of factors and sums of squares";
+const ZEROS: &str = "exact arithmetic: all zeros of the polynomials in one variable";
+const MATRIX: &str = "exact arithmetic: the matrix of a polynomial of degree two";
 const BOXES: &str = "interval arithmetic on boxes";
 const EXACT: &str = "exact arithmetic at a state";
 const INTERVALS: &str = "interval arithmetic at a state";
@@ -124,6 +132,8 @@ fn one(system: &mut System, on: &OnBranch, entry: usize, given: Given<'_>, rng: 
     let certain = |engine: String| Verdict::Proved { engine, log2_error: f64::NEG_INFINITY };
     match answer {
         InequalityAnswer::Holds(Argument::Signs) => certain(SIGNS.to_owned()),
+        InequalityAnswer::Holds(Argument::Zeros) => certain(ZEROS.to_owned()),
+        InequalityAnswer::Holds(Argument::Matrix) => certain(MATRIX.to_owned()),
         InequalityAnswer::Holds(Argument::Boxes { boxes, touches }) => {
             let engine = match boxes {
                 1 => BOXES.replace("boxes", "the whole box"),
@@ -138,6 +148,7 @@ fn one(system: &mut System, on: &OnBranch, entry: usize, given: Given<'_>, rng: 
             }
         }
         InequalityAnswer::Fails => tries.verdict(system),
+        InequalityAnswer::FailsAt(place) => at_irrational(system, on, &place, tries, rng),
         InequalityAnswer::Open(open) => {
             if solved {
                 for attempt in FIRST..LAST {
@@ -156,6 +167,104 @@ fn one(system: &mut System, on: &OnBranch, entry: usize, given: Given<'_>, rng: 
             Verdict::undecided(why)
         }
     }
+}
+
+/// The refutation at an irrational value of a symbol. A zero of degree two is a number that the checker knows; of any other one its polynomial
+/// is told, and between what it lies.
+fn at_irrational(
+    system: &mut System,
+    on: &OnBranch,
+    place: &IrrationalPlace,
+    mut tries: Tries,
+    rng: &mut impl Rng,
+) -> Verdict {
+    if let Some(value) = by_an_expression(system, place) {
+        let mut branch = on.branch.clone();
+        for (_, other) in &mut branch.values {
+            let values = HashMap::from([(place.symbol, value)]);
+            *other = system.graph.substitute(&[*other], &values)[0];
+        }
+        branch.values.insert(place.symbol, value);
+        if let Ok(there) = OnBranch::new(system, &branch, &on.statement) {
+            for touching in [false, true] {
+                tries.are_equal = touching;
+                let point = there.draw(system, 0, rng);
+                if tries.refute(system, &there, point) {
+                    return tries.verdict(system);
+                }
+            }
+        }
+    }
+    let name = system.symbol_name(place.symbol).to_owned();
+    let Irrational::Zero { polynomial, root } = &place.value else {
+        return Verdict::undecided(format!(
+            "it seems to fail at an angle {name} of some twelfths of pi, which the checker does not confirm"
+        ));
+    };
+    let (value, exact) = (root.near(), root.text(&name, polynomial));
+    let Some([left, right]) = sides_near(system, on, (place, root), tries.entry) else {
+        return Verdict::undecided(format!(
+            "it fails at {name} = {exact}, at which the sides cannot be enclosed"
+        ));
+    };
+    let state = vec![NamedCoordinate { name, exact, value }];
+    let witness = Witness { state, left, right, entry: None, refutation: None };
+    Verdict::Refuted { engine: ZEROS.to_owned(), witness }
+}
+
+/// The digits of an irrational zero and of the sides there.
+const SHOWN: usize = 12;
+/// And the bits with which they are computed.
+const BITS_SHOWN: usize = 200;
+
+/// A zero of a polynomial of degree two, or an angle, as an expression.
+fn by_an_expression(system: &mut System, place: &IrrationalPlace) -> Option<NodeId> {
+    let (polynomial, root) = match &place.value {
+        Irrational::Zero { polynomial, root } => (polynomial, root),
+        Irrational::HalfTurns(turns) => {
+            let (turns, pi) = (system.graph.rational(turns.clone()), system.graph.pi());
+            return Some(system.graph.mul(turns, pi));
+        }
+    };
+    let [c, b, a] = &polynomial[..] else { return None };
+    let two = RBig::from(2);
+    let (middle, twice) = (-b / (a * &two), a * &two);
+    let below = (b * b - a * c * RBig::from(4)) / (&twice * &twice);
+    let graph = &mut system.graph;
+    let is_upper = root.low >= middle;
+    let (middle, below) = (graph.rational(middle), graph.rational(below));
+    let root = graph.apply(Function::Sqrt, below);
+    Some(if is_upper { graph.add(middle, root) } else { graph.sub(middle, root) })
+}
+
+/// The sides of an entry where a symbol is known to lie between two numbers.
+fn sides_near(
+    system: &System,
+    on: &OnBranch,
+    (place, root): (&IrrationalPlace, &RealRoot),
+    entry: usize,
+) -> Option<[String; 2]> {
+    let sides = &on.terms.sides;
+    let program = Program::plain(&system.graph, &[sides[entry], sides[entry + sides.len() / 2]]);
+    let arithmetic = Enclosures::new(BITS_SHOWN);
+    let (low, high) = (arithmetic.rational(&root.low).ok()?, arithmetic.rational(&root.high).ok()?);
+    let inputs = match program.inputs() {
+        [] => Vec::new(),
+        [Input::Plain(symbol)] if *symbol == place.symbol => vec![Enclosures::hull(&low, &high)],
+        _ => return None,
+    };
+    let values = program.load(arithmetic).ok()?.run(&inputs, &mut Vec::new()).ok()?;
+    let text = |value: &Enclosure| {
+        value
+            .certain_decimal(SHOWN)
+            .unwrap_or_else(|| round_to_decimal(&((value.low() + value.high()) / RBig::from(2)), SHOWN))
+    };
+    let texts = [text(&values[0]), text(&values[1])];
+    // two sides that are equal are told by the one that is known to more digits
+    Some(match (place.touches, values[1].is_exact()) {
+        (false, _) => texts,
+        (true, exact) => [texts[usize::from(exact)].clone(), texts[usize::from(exact)].clone()],
+    })
 }
 
 /// What is to be said where the two sides are one expression. An inequality that excludes equality fails there, wherever

@@ -5,7 +5,7 @@ use super::case::Case;
 use super::cover::{NamedSet, off_sets};
 use super::explore::{Explored, FullCase, Search};
 use super::merge::merged;
-use super::real::{exact_values, state_on};
+use super::real::{exact_values, irrational_state, state_on};
 use super::rows::Rows;
 use super::sets::{Asked, initial_values, mentioned_in_words, prepared};
 use super::shown::Shown;
@@ -13,7 +13,9 @@ use dashu::rational::RBig;
 use palmistry_lang::{Matrix, System, determinant};
 use palmistry_math::expression::{Guard, Need, NodeId};
 use palmistry_math::number::Rationals;
-use palmistry_rank::observability::{Codistribution, GenericRank, Length, State, generic_rank, rank};
+use palmistry_rank::observability::{
+    Codistribution, GenericRank, Length, State, StateInWords, generic_rank, rank,
+};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
@@ -69,6 +71,8 @@ pub(crate) enum Everywhere {
     },
     /// At a state where it is claimed to be so the rank is another one.
     Refuted { state: State, found: usize, set: Vec<String>, log2_error: f64 },
+    /// At a state of which one number is irrational the rank is lower than claimed: at most this.
+    RefutedAt { state: StateInWords, at_most: usize, set: Vec<String>, log2_error: f64 },
     /// Neither, in words.
     Open(String),
 }
@@ -235,6 +239,14 @@ fn off_the_sets(
             let shown = merged(algebra, search, std::slice::from_ref(short));
             let set = shown.iter().flat_map(|shown| shown.place(algebra)).collect();
             return Ok(Everywhere::Refuted { state, found, set, log2_error });
+        }
+        // what has no rational state may have a real one
+        if let (Some(log2_error), true) = (certain, claim.except.is_empty() && short.rank < claim.rank)
+            && let Some(state) = irrational_state(algebra, search, &short.case)
+        {
+            let shown = merged(algebra, search, std::slice::from_ref(short));
+            let set = shown.iter().flat_map(|shown| shown.place(algebra)).collect();
+            return Ok(Everywhere::RefutedAt { state, at_most: short.rank, set, log2_error });
         }
         if !pieces.is_empty() {
             left.push(short.clone());

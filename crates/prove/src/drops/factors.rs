@@ -5,11 +5,11 @@
 //! negative has a minimum wherever it vanishes, so that all its derivatives vanish there too: that is what [`semidefinite`]
 //! is asked for. Of a polynomial in one variable Sturm's chain counts the real zeros.
 
-use super::one_variable::zeros_of;
 use dashu::base::{Abs, Sign};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
 use palmistry_math::number::polynomial::{Exponents, LARGEST_ARITY, Polynomial, Ring};
+use palmistry_math::number::real_roots::zeros_of;
 use palmistry_math::number::{primitive, split, square_root};
 
 /// Factors are looked for in polynomials of at most so many monomials.

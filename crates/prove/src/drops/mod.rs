@@ -22,7 +22,6 @@ mod lower;
 mod merge;
 mod minor;
 mod on_box;
-mod one_variable;
 mod point;
 mod real;
 mod rows;

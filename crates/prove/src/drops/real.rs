@@ -5,12 +5,12 @@ use super::case::{Case, Relation};
 use super::cover::NamedSet;
 use super::explore::Search;
 use super::factors::places;
-use super::one_variable::{common, rational_zeros, zeros_of};
 use dashu::rational::RBig;
 use palmistry_math::expression::{Guard, Need, NodeId, Program, Symbol, expand_angles};
 use palmistry_math::number::polynomial::Polynomial;
-use palmistry_math::number::{Arithmetic, Rationals};
-use palmistry_rank::observability::{Coordinate, State};
+use palmistry_math::number::real_roots::{common, rational_zeros, real_roots, square_free, zeros_of};
+use palmistry_math::number::{Arithmetic, Rationals, rational_to_f64};
+use palmistry_rank::observability::{Coordinate, NamedCoordinate, State, StateInWords};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -52,24 +52,68 @@ pub(super) fn state_on(
 /// Whether a case whose one unsolved equation has no rational solution has real points: at rational values of all else that equation
 /// has a real zero at which nothing vanishes that must not. `false` where that was not found, which says nothing.
 pub(super) fn has_real_points(algebra: &mut Algebra<'_>, search: &Search<'_>, case: &Case) -> bool {
+    real_point(algebra, search, case).is_some()
+}
+
+/// Values of all symbols of a case but one, and the equation for that one.
+struct RealPoint {
+    free: BTreeMap<Symbol, RBig>,
+    solved: Vec<(Symbol, NodeId)>,
+    place: usize,
+    equation: Vec<RBig>,
+}
+
+fn real_point(algebra: &mut Algebra<'_>, search: &Search<'_>, case: &Case) -> Option<RealPoint> {
     let ([relation], true) =
         (case.relations.as_slice(), search.guards.is_empty() && case.positive.is_empty())
     else {
-        return false;
+        return None;
     };
-    let Some(frame) = Frame::of(algebra, search, case, &[]) else { return false };
+    let frame = Frame::of(algebra, search, case, &[])?;
     let mut rng = ChaCha8Rng::seed_from_u64(0x7265_616c); // any fixed seed
-    (0..ATTEMPTS).any(|attempt| {
-        let values = frame.draw(algebra, case, attempt, &mut rng);
-        let Some(equation) = in_one_variable(algebra, &relation.polynomial, relation.place, &values) else {
-            return false;
-        };
-        zeros_of(&equation) > 0
+    (0..ATTEMPTS).find_map(|attempt| {
+        let free = frame.draw(algebra, case, attempt, &mut rng);
+        let equation = in_one_variable(algebra, &relation.polynomial, relation.place, &free)?;
+        let exists = zeros_of(&equation) > 0
             && case.nonzero.iter().all(|factor| {
-                let factor = in_one_variable(algebra, factor, relation.place, &values);
+                let factor = in_one_variable(algebra, factor, relation.place, &free);
                 factor.is_some_and(|factor| common(&equation, &factor).len() == 1)
-            })
+            });
+        exists.then(|| RealPoint { free, solved: frame.solved.clone(), place: relation.place, equation })
     })
+}
+
+/// A real point of a case as a state in words, where that one number is irrational and all others are drawn.
+pub(super) fn irrational_state(
+    algebra: &mut Algebra<'_>,
+    search: &Search<'_>,
+    case: &Case,
+) -> Option<StateInWords> {
+    let RealPoint { free, solved, place, equation } = real_point(algebra, search, case)?;
+    let symbol = algebra.symbol_at(place)?;
+    // an angle is not the number that stands for it, and what follows from an irrational number has no short name
+    let is_plain = |symbol: Symbol| !algebra.tangents.values().any(|tangent| *tangent == symbol);
+    let is_as_in_the_file = case.chart.is_empty() && algebra.coordinates.changed.is_empty();
+    if !solved.is_empty()
+        || !is_as_in_the_file
+        || !is_plain(symbol)
+        || !free.keys().all(|symbol| is_plain(*symbol))
+    {
+        return None;
+    }
+    let name = |symbol: Symbol| algebra.system.symbol_name(symbol).to_owned();
+    let mut root = real_roots(&equation).into_iter().next()?;
+    let simple = square_free(&equation);
+    root.narrow(&simple);
+    let mut state: BTreeMap<Symbol, (String, f64)> =
+        free.iter().map(|(symbol, value)| (*symbol, (value.to_string(), rational_to_f64(value)))).collect();
+    state.insert(symbol, (root.text(&name(symbol), &simple), root.near()));
+    Some(
+        state
+            .into_iter()
+            .map(|(symbol, (exact, value))| NamedCoordinate { name: name(symbol), exact, value })
+            .collect(),
+    )
 }
 
 /// What is drawn for a case, and what follows from it.

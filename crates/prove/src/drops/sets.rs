@@ -10,11 +10,13 @@ use super::on_box::{BoxShare, share_of_the_box};
 use super::real::{has_real_points, state_on};
 use super::rows::Rows;
 use super::shown::Shown;
+use palmistry_budget::{Budget, OF_A_QUESTION};
 use palmistry_lang::{Assignment, System};
 use palmistry_math::expression::{Guard, NodeId, add_guard};
 use palmistry_rank::observability::{Codistribution, Length, StateInWords, solve_conditions};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -114,7 +116,27 @@ pub fn where_it_drops_telling(
     tell: &mut dyn FnMut(DropAnswer),
 ) -> Result<DropAnswer, String> {
     let mentioned = mentioned_in_words(system);
-    let mut answer = with_angles(system, &mentioned, |system| drops_of(system, seed, interrupt, tell))?;
+    let budget = Arc::new(Budget::new(OF_A_QUESTION));
+    // what was being changed when the budget came to its end is not met again
+    let (mut copy, mut last) = (system.clone(), None);
+    let found = budget.within(|| {
+        with_angles(&mut copy, &mentioned, |system| {
+            drops_of(system, seed, interrupt, &mut |answer: DropAnswer| {
+                last = Some(answer.clone());
+                tell(answer);
+            })
+        })
+    });
+    let mut answer = match (found, last) {
+        (Ok(answer), _) => {
+            *system = copy;
+            answer?
+        }
+        (Err(spent), Some(last)) => {
+            DropAnswer { out_of_reach: Some(format!("cut off: {spent}")), interrupted: false, ..last }
+        }
+        (Err(spent), None) => return Err(format!("cut off: {spent}")),
+    };
     if !answer.is_exact() && answer.rank == answer.dimension {
         let begin = Instant::now();
         answer.on_the_box = Some(share_of_the_box(system, interrupt));

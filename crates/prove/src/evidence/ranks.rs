@@ -3,6 +3,7 @@
 use super::NotWritten;
 use super::minors::largest_minor;
 use super::states::exact_state;
+use palmistry_budget::Share;
 use palmistry_checker::Lowering;
 use palmistry_checker::{
     CertifiedRank, ClaimKind, ClaimParts, Evidence, Missing, RankedState, Ratio, RecordedWord, VerdictRecord,
@@ -98,7 +99,9 @@ fn certified_rank(
         minor: largest_minor(&program, width, &recorded.state, field).unwrap_or_default(),
         kernel: recorded.unseen.iter().map(|v| v.iter().cloned().map(Ratio).collect()).collect(),
     };
-    let mut states: Vec<RankedState> = report.recorded.par_iter().map(with_minor).collect();
+    let share = Share::here();
+    let mut states: Vec<RankedState> =
+        report.recorded.par_iter().map(|recorded| share.carry(|| with_minor(recorded))).collect();
     let short = states.iter().any(|state| state.rank < width);
     let needed: BTreeSet<usize> = states.iter().flat_map(|state| state.minor.rows.iter().copied()).collect();
     // a full rank is shown by the rows of its minor, a short one by all rows

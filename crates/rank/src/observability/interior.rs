@@ -149,7 +149,7 @@ fn without_a_state(system: &mut System, group: &[Guard], strictly: &Strictly) ->
             }
             InequalityAnswer::Holds(_) => return Some(Interior::Flat(vec![guard.node])),
             InequalityAnswer::Fails => return None,
-            InequalityAnswer::Open(_) => {}
+            InequalityAnswer::FailsAt(_) | InequalityAnswer::Open(_) => {}
         }
     }
     Some(match flat.is_empty() {

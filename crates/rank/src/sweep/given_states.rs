@@ -7,6 +7,7 @@ use super::prepared::row_of;
 use super::stream::{StateVerdict, StatesError, Stream, Verdicts, held};
 use super::table::StateRow;
 use crate::observability::{Coordinate, Locus, Source, State};
+use palmistry_budget::Share;
 use palmistry_math::expression::Symbol;
 use palmistry_math::number::rational_from_f64;
 use rayon::prelude::*;
@@ -83,12 +84,13 @@ impl GivenStates {
         if let Some(other) = states.iter().find(|values| values.len() != count) {
             return Err(StatesError::Lengths { first: count, other: other.len() });
         }
+        let share = Share::here();
         (0..count.div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let range = chunk * CHUNK..count.min((chunk + 1) * CHUNK);
                 let part: Vec<&[f64]> = states.iter().map(|values| &values[range.clone()]).collect();
-                let rows = self.chunk(&part, range.start, interrupt).transpose()?;
+                let rows = share.carry(|| self.chunk(&part, range.start, interrupt)).transpose()?;
                 Some(rows.map(&kept))
             })
             // the first chunk without rows ends it

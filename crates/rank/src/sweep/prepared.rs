@@ -9,6 +9,7 @@ use super::states::{RecordedState, Stretch, SweepOptions, SweepReport, Told};
 use super::stream::{Stream, StreamOptions};
 use super::table::{StateRow, TableOf, put_in};
 use crate::observability::{Codistribution, Defined, Locus, LocusError, Spectrum, State};
+use palmistry_budget::Share;
 use palmistry_lang::System;
 use palmistry_math::expression::{Graph, NodeId, add_guard, expand_angles};
 use palmistry_math::number::{PrimeField, Rung};
@@ -196,14 +197,14 @@ impl PreparedSweep {
         indices: &[u64],
         wants_rows: bool,
     ) -> Result<Vec<StateRow>, LocusError> {
-        let block: Vec<Result<(State, StateDecision), LocusError>> = indices
-            .par_iter()
-            .map(|index| {
-                let state = self.state(*index)?;
-                let decided = self.decider.decide(&state);
-                Ok((state, decided))
-            })
-            .collect();
+        let share = Share::here();
+        let decided = |index: &u64| {
+            let state = self.state(*index)?;
+            let decided = self.decider.decide(&state);
+            Ok((state, decided))
+        };
+        let block: Vec<Result<(State, StateDecision), LocusError>> =
+            indices.par_iter().map(|index| share.carry(|| decided(index))).collect();
         let mut rows = Vec::new();
         for (index, item) in indices.iter().zip(block) {
             let (state, decided) = item?;
@@ -275,15 +276,16 @@ impl PreparedSweep {
     /// The worst state and others that are spread over the sweep, with their certified ranks.
     fn recorded(&self, worst: Option<State>, told: Told<'_>) -> Result<Vec<RecordedState>, LocusError> {
         let count = told.recorded.min(told.samples);
+        let share = Share::here();
         let drawn = (0..count).into_par_iter().map(|part| {
             // in 128 bits, since the product of two counts may not fit into 64
             let index = u128::from(part) * u128::from(told.samples) / u128::from(count);
-            self.state(index as u64)
+            share.carry(|| self.state(index as u64))
         });
         let drawn: Vec<State> = drawn.collect::<Result<_, _>>()?;
         let first = worst.filter(|_| count > 0);
         let states: Vec<State> = first.into_iter().chain(drawn).take(count as usize).collect();
-        let decided = states.into_par_iter().map(|state| match self.decider.decide(&state) {
+        let decided = states.into_par_iter().map(|state| match share.carry(|| self.decider.decide(&state)) {
             _ if told.interrupt.load(Ordering::Relaxed) => None,
             StateDecision::Report(StateReport {
                 rank,
@@ -292,7 +294,8 @@ impl PreparedSweep {
                 certainty: Certainty::Certified,
                 ..
             }) => {
-                let unseen = if hidden.is_empty() { unseen } else { self.decider.unseen(&state) };
+                let unseen =
+                    if hidden.is_empty() { unseen } else { share.carry(|| self.decider.unseen(&state)) };
                 // a short rank is checked by what is not seen, exactly
                 (rank + unseen.len() == self.decider.columns()).then_some(RecordedState {
                     state,

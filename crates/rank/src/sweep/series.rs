@@ -4,6 +4,7 @@ use super::counts::SweepCounts;
 use super::states::{Stretch, SweepOptions, SweepReport, Told};
 use super::table::{StateRow, TableOf};
 use crate::observability::{Defined, Locus, LocusError, Probe};
+use palmistry_budget::Share;
 use palmistry_lang::System;
 use palmistry_math::number::{PrimeField, Rung};
 use rand::SeedableRng;
@@ -53,17 +54,17 @@ impl PreparedSeries {
         let mut next = range.start;
         while next < range.end && !interrupt.load(Ordering::Relaxed) {
             let end = range.end.min(next.saturating_add(BLOCK));
-            let block: Vec<Result<Result<usize, String>, LocusError>> = (next..end)
-                .into_par_iter()
-                .map(|index| {
-                    let state = self.locus.draw(self.seed, index)?;
-                    if let Some(undefined) = self.defined.failure(graph, &state) {
-                        return Ok(Err(undefined));
-                    }
-                    let pole = || "a divisor is zero modulo the prime, or a value is not rational".to_owned();
-                    Ok(self.probe.rank_at(&state, self.field, index, most).ok_or_else(pole))
-                })
-                .collect();
+            let share = Share::here();
+            let decided = |index| {
+                let state = self.locus.draw(self.seed, index)?;
+                if let Some(undefined) = self.defined.failure(graph, &state) {
+                    return Ok(Err(undefined));
+                }
+                let pole = || "a divisor is zero modulo the prime, or a value is not rational".to_owned();
+                Ok(self.probe.rank_at(&state, self.field, index, most).ok_or_else(pole))
+            };
+            let block: Vec<Result<Result<usize, String>, LocusError>> =
+                (next..end).into_par_iter().map(|index| share.carry(|| decided(index))).collect();
             let mut rows = Vec::new();
             for (index, found) in (next..end).zip(block) {
                 let found = found?;

@@ -1,6 +1,7 @@
 //! A row for each state of a sweep, for those who want to look at all of them.
 
 use crate::observability::{Coordinate, LocusError, State};
+use palmistry_budget::Share;
 use palmistry_math::expression::Symbol;
 use rayon::prelude::*;
 
@@ -66,8 +67,9 @@ impl TableOf<'_, '_> {
         let Some((branch, table)) = &mut self.0 else { return Ok(()) };
         let StateTable { coordinates, take } = &mut **table;
         if !coordinates.is_empty() {
+            let share = Share::here();
             rows.par_iter_mut().try_for_each(|row| {
-                let state = state(row.index)?;
+                let state = share.carry(|| state(row.index))?;
                 let of = |symbol| state.values.get(symbol).map_or(f64::NAN, Coordinate::to_f64);
                 row.coordinates = coordinates.iter().map(of).collect();
                 Ok(())

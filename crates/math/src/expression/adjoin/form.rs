@@ -3,6 +3,7 @@
 use dashu::base::Gcd;
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
+use palmistry_budget as budget;
 use std::collections::BTreeMap;
 
 /// A generator, by its place in the table of them.
@@ -35,6 +36,7 @@ impl Form {
     }
 
     pub fn insert(&mut self, monomial: Monomial, factor: RBig) {
+        budget::steps(16);
         let entry = self.0.entry(monomial).or_insert(RBig::ZERO);
         *entry += factor;
         if entry.is_zero() {
@@ -92,6 +94,7 @@ impl Form {
 
     /// The product, not reduced by what the generators satisfy.
     pub fn times(&self, other: &Form) -> Option<Form> {
+        budget::steps(64 * self.0.len() * other.0.len());
         let mut product = Form::default();
         for (left, a) in &self.0 {
             for (right, b) in &other.0 {

@@ -5,6 +5,7 @@
 //! R. Gebauer and H. M. Moeller, *On an installation of Buchberger's algorithm*, J. Symbolic Computation 6 (1988).
 
 use super::monomials::Monomials;
+use palmistry_budget as budget;
 use palmistry_math::number::PrimeField;
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -34,6 +35,14 @@ pub(super) struct Limits<'a> {
     /// Products of residues that were done so far.
     pub work: &'a Cell<u64>,
     pub is_over: &'a dyn Fn() -> bool,
+}
+
+impl Limits<'_> {
+    /// Products of residues that are about to be done, or were just done.
+    fn spend(&self, products: u64) {
+        self.work.set(self.work.get() + products);
+        budget::steps(products as usize);
+    }
 }
 
 /// What it costs to find a monomial, in products of residues.
@@ -217,7 +226,7 @@ impl Basis {
                     }
                 }
             }
-            limits.work.set(limits.work.get() + work);
+            limits.spend(work);
             let Some(inverse) = kept.first().and_then(|lead| field.inverse(*lead)) else { continue };
             for value in &mut kept {
                 *value = field.product(*value, inverse);
@@ -235,7 +244,7 @@ impl Basis {
     fn multiple(&mut self, place: usize, lead: u32, limits: &Limits) -> Row {
         let row = &self.elements[place];
         // to find a monomial in the table takes as long as some products
-        limits.work.set(limits.work.get() + LOOK_UP * row.monomials.len() as u64);
+        limits.spend(LOOK_UP * row.monomials.len() as u64);
         let factor = self.monomials.quotient(lead, row.monomials[0]);
         let monomials =
             row.monomials.iter().map(|monomial| self.monomials.product(*monomial, factor)).collect();

@@ -4,6 +4,7 @@
 //! k-th derivative is `w_k = w_(k-1)' + w_(k-1) A`, of which the value at `t = 0` is wanted. Each order needs one coefficient
 //! less: all up to `K` cost `K^3/6` products for each entry of `A` that varies, and memory for one row of series.
 
+use palmistry_budget::Share;
 use palmistry_math::number::PrimeField;
 use rayon::prelude::*;
 
@@ -44,7 +45,10 @@ impl Covector {
         };
         let columns = 0..self.series.len();
         let series = match length * entries.len() > WORTH_SHARING {
-            true => columns.into_par_iter().map(column).collect(),
+            true => {
+                let share = Share::here();
+                columns.into_par_iter().map(|place| share.carry(|| column(place))).collect()
+            }
             false => columns.map(column).collect(),
         };
         Covector { series, length }

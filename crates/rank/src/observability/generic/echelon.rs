@@ -1,5 +1,6 @@
 //! Rows of residues in echelon form, one row more at a time.
 
+use palmistry_budget as budget;
 use palmistry_math::number::{Arithmetic, PrimeField};
 
 /// The span of the rows so far. Each row kept has a one where it begins, and zeros where the others begin.
@@ -24,6 +25,8 @@ impl Echelon {
     /// Whether a row lies outside the span so far; it is taken into it.
     pub fn insert(&mut self, mut row: Vec<u64>) -> bool {
         let field = self.field;
+        // from the row, and of the row from the others
+        budget::steps(2 * self.rows.len() * row.len());
         for (pivot, other) in self.pivots.iter().zip(&self.rows) {
             let factor = row[*pivot];
             field.subtract_multiple(&mut row, factor, other);
@@ -44,6 +47,7 @@ impl Echelon {
 
     /// Whether a row lies in the span.
     pub fn contains(&self, mut row: Vec<u64>) -> bool {
+        budget::steps(self.rows.len() * row.len());
         for (pivot, other) in self.pivots.iter().zip(&self.rows) {
             let factor = row[*pivot];
             self.field.subtract_multiple(&mut row, factor, other);

@@ -2,6 +2,7 @@
 
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
+use palmistry_budget as budget;
 use palmistry_math::number::PrimeField;
 
 /// Sums, differences and products of residues: these are never refused.
@@ -71,6 +72,7 @@ impl Echelon {
 
     /// Adds a row; whether it raised the rank.
     pub fn add(&mut self, mut row: Vec<u64>) -> bool {
+        budget::steps(self.rows.len() * row.len());
         for (pivot, known) in &self.rows {
             let factor = row[*pivot];
             self.residues.subtract(&mut row, factor, known);

@@ -29,6 +29,7 @@ pub(super) use equilibrate::Equilibrium;
 pub use given::{StateVerdict, StatesError, Verdicts};
 pub use jacobi::Jacobi;
 use lane::{LaneFound, decide_lane};
+use palmistry_budget::Share;
 use palmistry_lang::System;
 use palmistry_math::expression::{BlockProgram, Graph, Guard, Input, Need, Node, NodeId, expand_angles};
 use palmistry_math::number::{
@@ -200,13 +201,15 @@ impl Stream {
         let mut done = 0;
         while done < options.states && !options.interrupt.load(Ordering::Relaxed) {
             let chunks = options.states.saturating_sub(done).div_ceil(CHUNK).min(CHUNKS);
+            let share = Share::here();
             let found: Vec<Result<ChunkFound, LocusError>> = (0..chunks)
                 .into_par_iter()
                 .map(|chunk| {
                     let first = done + chunk * CHUNK;
                     let count = CHUNK.min(options.states - first);
                     let first = begin + first;
-                    self.instructions.run(Chunk { stream: self, options, first, count, wants_rows })
+                    let chunk = Chunk { stream: self, options, first, count, wants_rows };
+                    share.carry(|| self.instructions.run(chunk))
                 })
                 .collect();
             for part in found {
