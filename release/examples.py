@@ -28,7 +28,7 @@ def agrees(shown: list[str], printed: list[str]) -> bool:
 def main(path: str) -> None:
     """Runs all examples, and ends with a message at the first that is not as it is shown."""
     blocks = re.findall(r"^```(\S+)([^\n]*)\n(.*?)^```", open(path, encoding="utf-8").read(), re.M | re.S)
-    count, status = 0, 0
+    count, status, left_out = 0, 0, []
     for kind, words, text in blocks:
         named = re.search(r"file=(\S+)", words)
         if kind == "palmistry" and named:
@@ -39,6 +39,10 @@ def main(path: str) -> None:
         parts = re.split(r"^\$ ", text, flags=re.M)[1:]
         for part in parts:
             command, *shown = part.rstrip("\n").split("\n")
+            if " proofs/" in command:
+                # a file of the source tree, which is not here
+                left_out.append(command)
+                continue
             if command == "echo $?":
                 printed = [str(status)]
             else:
@@ -48,7 +52,7 @@ def main(path: str) -> None:
             if not agrees(shown, printed):
                 sys.exit(f"not as shown: {command}\n" + "\n".join(printed))
             count += 1
-    print(f"{count} commands answer as shown")
+    print(f"{count} commands answer as shown" + "".join(f"\nnot run, since it needs the source tree: {line}" for line in left_out))
 
 
 main(sys.argv[1])

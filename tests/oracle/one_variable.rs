@@ -294,6 +294,20 @@ fn one_quadric(case: u64, findings: &mut Findings) {
         }
     }
     let sign = dice.one_of(&[">", ">="]);
+    // a product of two forms that are independent takes all values, whatever is linear beside it
+    if dice.once_in(4) {
+        let numbers: Vec<i64> = (0..5).map(|_| dice.between(-3, 3)).collect();
+        let [a, b, c, d, e] = numbers[..] else { return };
+        let text = format!(
+            "system \"form\"\nstate x, y, z\ndrift f\n  others' = 0\noutput x\n\
+             claim c: (x + ({a})*z)*(y + ({b})*z) + ({c})*x + ({d})*y + ({e}) {sign} 0\n"
+        );
+        return match verdicts(&text) {
+            Err(why) => findings.fault("no verdict", why, &text),
+            Ok(said) if said[0].word == Word::Refuted => findings.count("degree two", "refuted"),
+            Ok(said) => findings.fault("another verdict", said[0].why.clone(), &text),
+        };
+    }
     let sum = if terms.is_empty() { "0".to_owned() } else { terms.join(" + ") };
     let text = format!(
         "system \"form\"\nstate x, y, z\ndrift f\n  others' = 0\noutput x\nclaim c: {sum} {sign} 0\n"

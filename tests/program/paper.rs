@@ -384,6 +384,60 @@ fn a_new_paper_proves() {
     assert!(empty.join("paper.toml").is_file());
 }
 
+/// The demonstration answers its four questions, each command shown before its answer, and its files are there to be changed.
+#[test]
+fn a_demonstration_answers_four_questions() {
+    let folder = folder();
+    let place = folder.path().join("shown");
+    let name = place.to_str().unwrap();
+    let output = palmistry(&["demo", name]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let told = String::from_utf8_lossy(&output.stdout).into_owned();
+    let mut rest = told.as_str();
+    for words in [
+        "system \"A spring with a damper",
+        "$ palmistry rank",
+        "k  parameter  locally identifiable",
+        "$ palmistry prove",
+        "ok   proved     energy",
+        "3 claims: 2 proved, 1 refuted; 0 not as expected",
+        "$ palmistry observe",
+        "passes the chi-square test",
+        "$ palmistry verify",
+        "page/index.html in a browser",
+    ] {
+        let at = rest
+            .find(words)
+            .unwrap_or_else(|| panic!("'{words}' is not there, or not in its place:\n{told}"));
+        rest = &rest[at..];
+    }
+    let page = std::fs::read_to_string(place.join("page/index.html")).unwrap();
+    assert!(page.contains("A spring with a damper") && page.contains("<svg"));
+    // nothing that is there is lost
+    let again = palmistry(&["demo", name, "--json"]);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(json(&again)["error"]["message"].as_str().unwrap().contains("is not empty"));
+    let other = folder.path().join("other");
+    let found = json(&palmistry(&["demo", other.to_str().unwrap(), "--json"]));
+    let statuses: Vec<_> =
+        found["commands"].as_array().unwrap().iter().map(|c| c["status"].as_i64()).collect();
+    assert_eq!(statuses, [Some(0); 4]);
+}
+
+#[test]
+fn a_version_tells_what_was_built() {
+    let line = concat!("palmistry ", env!("CARGO_PKG_VERSION"));
+    for short in ["--version", "-V"] {
+        assert_eq!(String::from_utf8_lossy(&palmistry(&[short]).stdout).trim_end(), line);
+    }
+    let told = String::from_utf8_lossy(&palmistry(&["--version", "--verbose"]).stdout).into_owned();
+    assert!(told.starts_with(line), "{told}");
+    for row in ["commit", "compiler   rustc", "target", "features", "numbers", "processor"] {
+        assert!(told.contains(&format!("\n  {row}")), "{row}: {told}");
+    }
+    assert_eq!(palmistry(&["--verbose"]).status.code(), Some(2));
+}
+
 /// Shipped files are in normal form; and whatever is cut out of one, its form is the same signs, read as before, and its own form.
 #[test]
 fn the_normal_form_changes_no_sign() {

@@ -151,6 +151,18 @@ pub fn holds_by_signs(
             .is_some_and(|answer| matches!(answer, InequalityAnswer::Holds(_)))
 }
 
+/// Whether guards that are about one variable all hold somewhere; `None` where they are about more, or that is not decided.
+pub fn hold_somewhere(
+    graph: &mut Graph,
+    guards: &[Guard],
+    is_angle: &dyn Fn(Symbol) -> bool,
+) -> Option<bool> {
+    let bounds = bounds(graph, guards);
+    let signs = known_signs(graph, guards, &bounds);
+    let premises = Premises { assumed: guards, equations: &[] };
+    line::somewhere(graph, premises, is_angle, Known { bounds: &bounds, signs: &signs })
+}
+
 /// What the ways say that decide completely, in one variable and in degree two.
 fn completely(
     graph: &mut Graph,
@@ -167,11 +179,11 @@ fn completely(
         Some(line::OnALine::Fails(places)) => {
             for place in places {
                 match place {
-                    line::Place::At(place) => return Some(InequalityAnswer::FailsAt(place)),
-                    line::Place::Between(state) if refutes(graph, &state) => {
+                    line::FailingPlace::At(place) => return Some(InequalityAnswer::FailsAt(place)),
+                    line::FailingPlace::Between(state) if refutes(graph, &state) => {
                         return Some(InequalityAnswer::Fails);
                     }
-                    line::Place::Between(_) => {}
+                    line::FailingPlace::Between(_) => {}
                 }
             }
         }

@@ -25,11 +25,11 @@ pub enum OnALine {
     /// It holds wherever the premises do.
     Holds,
     /// It fails in these places, in the order in which they are to be tried; nothing is known of others.
-    Fails(Vec<Place>),
+    Fails(Vec<FailingPlace>),
 }
 
 /// Where a goal fails.
-pub enum Place {
+pub enum FailingPlace {
     /// At all values of a symbol between two, or at one.
     Between(Proposed),
     /// At one irrational value.
@@ -122,10 +122,7 @@ pub fn on_a_line(
     let equations: Vec<_> = premises.equations.iter().copied().filter(|node| near(graph, *node)).collect();
     let all = assumed.len() == premises.assumed.len() && equations.len() == premises.equations.len();
     let near = Premises { assumed: &assumed, equations: &equations };
-    let reading = Reading::new(graph, goal.node, near, is_angle)?;
-    let inputs = reading.inputs().to_vec();
-    let read = reading.polynomials(graph, known)?;
-    let line = Line::new(&inputs, &read, goal, &assumed)?;
+    let line = Line::read(graph, goal, near, is_angle, known)?;
     let failing = line.failing()?;
     if failing.is_empty() {
         return Some(OnALine::Holds);
@@ -134,8 +131,22 @@ pub fn on_a_line(
     if !all || !equations.is_empty() {
         return None;
     }
-    let places: Vec<Place> = failing.iter().filter_map(|piece| line.place(piece)).collect();
+    let places: Vec<FailingPlace> = failing.iter().filter_map(|piece| line.place(piece)).collect();
     (!places.is_empty()).then_some(OnALine::Fails(places))
+}
+
+/// Whether all premises hold somewhere; `None` where they are not about one variable, or one of them cannot be read.
+pub fn somewhere(
+    graph: &mut Graph,
+    premises: Premises<'_>,
+    is_angle: &dyn Fn(Symbol) -> bool,
+    known: Known<'_>,
+) -> Option<bool> {
+    // what holds nowhere fails wherever the premises hold
+    let never = Guard { node: graph.integer(-1), need: Need::NotNegative };
+    let line = Line::read(graph, never, premises, is_angle, known)?;
+    let is_somewhere = !line.failing()?.is_empty();
+    (!is_somewhere || !matches!(line.variable, Variable::Value)).then_some(is_somewhere)
 }
 
 /// A piece of a line.
@@ -149,6 +160,20 @@ enum Piece {
 }
 
 impl Line {
+    /// A goal and premises that are all about one variable.
+    fn read(
+        graph: &mut Graph,
+        goal: Guard,
+        premises: Premises<'_>,
+        is_angle: &dyn Fn(Symbol) -> bool,
+        known: Known<'_>,
+    ) -> Option<Line> {
+        let reading = Reading::new(graph, goal.node, premises, is_angle)?;
+        let inputs = reading.inputs().to_vec();
+        let read = reading.polynomials(graph, known)?;
+        Line::new(&inputs, &read, goal, premises.assumed)
+    }
+
     fn new(inputs: &[Input], read: &Polynomials, goal: Guard, assumed: &[Guard]) -> Option<Line> {
         let (variable, substitution) = variable(inputs, read)?;
         let mut line = Line {
@@ -310,13 +335,14 @@ impl Line {
     }
 
     /// Where a piece is, if a state can be proposed there.
-    fn place(&self, piece: &Piece) -> Option<Place> {
-        let at = |symbol: Symbol, value: RBig| Some(Place::Between(vec![(symbol, value.clone(), value)]));
+    fn place(&self, piece: &Piece) -> Option<FailingPlace> {
+        let at =
+            |symbol: Symbol, value: RBig| Some(FailingPlace::Between(vec![(symbol, value.clone(), value)]));
         match (&self.variable, piece) {
             (Variable::Value, _) => None,
             (Variable::Symbol(symbol), Piece::Between(low, high)) => {
                 let (low, high) = about(low.as_ref(), high.as_ref());
-                Some(Place::Between(vec![(*symbol, low, high)]))
+                Some(FailingPlace::Between(vec![(*symbol, low, high)]))
             }
             (Variable::Symbol(symbol), Piece::Zero(polynomial, root, touches)) => match root.exact() {
                 Some(zero) => at(*symbol, zero.clone()),
@@ -324,7 +350,7 @@ impl Line {
                     let (polynomial, mut root) = (polynomial.clone(), root.clone());
                     root.narrow(&polynomial);
                     let value = Irrational::Zero { polynomial, root };
-                    Some(Place::At(IrrationalPlace { symbol: *symbol, value, touches: *touches }))
+                    Some(FailingPlace::At(IrrationalPlace { symbol: *symbol, value, touches: *touches }))
                 }
             },
             (Variable::Root { symbol, shift, factor }, piece) => {
@@ -342,18 +368,18 @@ impl Line {
                 // well inside, whatever the rounding
                 let inset = (high - low) / 16.0;
                 let ends = (rational_from_f64(low + inset)?, rational_from_f64(high - inset)?);
-                (ends.0 < ends.1).then(|| Place::Between(vec![(*symbol, ends.0, ends.1)]))
+                (ends.0 < ends.1).then(|| FailingPlace::Between(vec![(*symbol, ends.0, ends.1)]))
             }
             (Variable::HalfAngle(symbol), Piece::Zero(polynomial, root, touches)) => {
                 let mut root = root.clone();
                 root.narrow(polynomial);
                 let value = Irrational::HalfTurns(known_angle(2.0 * root.near().atan())?);
-                Some(Place::At(IrrationalPlace { symbol: *symbol, value, touches: *touches }))
+                Some(FailingPlace::At(IrrationalPlace { symbol: *symbol, value, touches: *touches }))
             }
             (Variable::HalfAngle(symbol), Piece::HalfTurn) => {
                 let touches = self.goal.top.iter().any(|(place, _)| self.at_half_turn[*place].is_none());
                 let value = Irrational::HalfTurns(RBig::ONE);
-                Some(Place::At(IrrationalPlace { symbol: *symbol, value, touches }))
+                Some(FailingPlace::At(IrrationalPlace { symbol: *symbol, value, touches }))
             }
             (_, Piece::HalfTurn) => None,
         }

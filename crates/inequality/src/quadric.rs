@@ -8,6 +8,7 @@ use super::reading::Reading;
 use super::{Known, Premises, Proposed};
 use dashu::base::Sign;
 use dashu::rational::RBig;
+use palmistry_budget as budget;
 use palmistry_math::expression::{Graph, Guard, Input, Need, Symbol};
 use palmistry_math::number::polynomial::{Polynomial, Ring};
 
@@ -124,8 +125,12 @@ impl Form {
             let pivot = matrix[k][k].clone();
             if pivot.is_zero() {
                 if let Some(l) = (k + 1..size).find(|l| !matrix[k][*l].is_zero()) {
-                    // q(s e_k + e_l) = 2 s a_kl + ..: linear in s
-                    return self.downwards(&columns[k], &columns[l]);
+                    // q(s e_k + t e_l) = 2 s (t a_kl + b_k) + ..: linear in s, with a slope for one of two values of t
+                    let from = match (&matrix[k][l] + &linear[k]).is_zero() {
+                        true => columns[l].iter().map(|x| x + x).collect(),
+                        false => columns[l].clone(),
+                    };
+                    return self.downwards(&columns[k], &from);
                 }
                 if !linear[k].is_zero() {
                     return self.downwards(&columns[k], &vec![RBig::ZERO; size]);
@@ -166,6 +171,7 @@ impl Form {
         let mut step = RBig::ONE;
         // the values grow at least as the step does, whose square passes every number
         loop {
+            budget::steps(256 * direction.len() * direction.len());
             for signed in [step.clone(), -step.clone()] {
                 let point: Vec<RBig> = from.iter().zip(direction).map(|(x, d)| x + &signed * d).collect();
                 if self.value(&point) < RBig::ZERO {
@@ -202,6 +208,8 @@ mod tests {
         assert_eq!((point, value), (numbers(&[1, 1]), RBig::from(-3)));
         assert!(matches!(form(&[&[0, 1], &[1, 0]], &[0, 0], 7).least(), Least::Below(_)));
         assert!(matches!(form(&[&[1, 0], &[0, 0]], &[0, 1], 7).least(), Least::Below(_)));
+        // on the line y = 1 it does not depend on x
+        assert!(matches!(form(&[&[0, 1], &[1, 0]], &[-1, 0], 7).least(), Least::Below(_)));
         assert!(
             matches!(form(&[&[1, 1], &[1, 1]], &[0, 0], 0).least(), Least::At(_, value) if value.is_zero())
         );

@@ -1,6 +1,7 @@
 //! Does a statement speak of anything? Its sides have to exist at some state that meets its conditions.
 
 use super::terms::OnBranch;
+use palmistry_inequality::hold_somewhere;
 use palmistry_lang::System;
 use palmistry_math::expression::{
     Guard, Need, NodeId, Program, ZeroTest, draw_residues, expand_angles, identically_zero,
@@ -77,6 +78,11 @@ pub(crate) fn existence(system: &mut System, on: &OnBranch, rng: &mut impl Rng) 
             return Existence::Shown;
         }
     }
+    let found = hold_somewhere(&mut system.graph, &guards, is_angle);
     let texts: Vec<String> = open.iter().map(|(guard, _)| guard.text(&system.graph)).collect();
-    Existence::NotShown(texts.join(", "))
+    match found {
+        Some(true) => Existence::Shown,
+        Some(false) => Existence::Nowhere(texts.join(", ")),
+        None => Existence::NotShown(texts.join(", ")),
+    }
 }
