@@ -295,6 +295,9 @@ fn judge(class: &str, claim: &Claim, said: &Said, dice: &mut Dice, findings: &mu
         Word::Refuted => {
             findings.count(class, "refuted");
             let shown = said.witness.as_ref();
+            if shown.is_some_and(|shown| shown.is_a_zero()) {
+                return findings.count(class, "refuted at a zero");
+            }
             let Some(mut point) = shown.and_then(|shown| Point::read(&shown.state)) else {
                 return findings.fault("a witness that cannot be read", format!("{said:?}"), &text);
             };

@@ -91,9 +91,7 @@ fn judge(
         Word::Proved => findings.count(class, "proved"),
         Word::Refuted => {
             findings.count(class, "refuted");
-            // an irrational state is told by its polynomial: `one_variable` judges those, whose zeros it knows
-            let is_zero = |(_, value): &(String, String)| value.contains("(a zero of ");
-            if said.witness.as_ref().is_some_and(|shown| shown.state.iter().any(is_zero)) {
+            if said.witness.as_ref().is_some_and(|shown| shown.is_a_zero()) {
                 return findings.count(class, "refuted at a zero");
             }
             let point = said.witness.as_ref().and_then(|shown| Point::read(&shown.state));

@@ -39,6 +39,14 @@ pub struct Shown {
     pub right: String,
 }
 
+impl Shown {
+    /// Whether a number of it is told as a zero of a polynomial, which the witnesses here do not read; `one_variable` judges those, whose
+    /// zeros it knows.
+    pub fn is_a_zero(&self) -> bool {
+        self.state.iter().any(|(_, value)| value.contains("(a zero of "))
+    }
+}
+
 /// Runs something of the library; a panic is told as such.
 fn caught<T>(run: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|payload| {

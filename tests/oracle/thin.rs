@@ -253,7 +253,7 @@ fn fault(set: &Set, claim: &Claim, said: &Said) -> Option<String> {
 
 #[test]
 fn thin_sets() {
-    let found = Findings::of("thin sets", 200, one_case);
+    let found = Findings::of("thin sets", 260, one_case);
     found.assert_no_fault("thin_sets");
     if found.is_whole() {
         for (class, what) in
