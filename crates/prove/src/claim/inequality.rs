@@ -180,7 +180,7 @@ fn at_irrational(
 ) -> Verdict {
     if let Some(value) = by_an_expression(system, place) {
         let mut branch = on.branch.clone();
-        for (_, other) in &mut branch.values {
+        for other in branch.values.values_mut() {
             let values = HashMap::from([(place.symbol, value)]);
             *other = system.graph.substitute(&[*other], &values)[0];
         }
