@@ -7,9 +7,11 @@ use super::reparametrise::reparametrisation;
 use super::shards::{NO_WHOLE, Parts, Shards};
 use super::{Status, Unusable};
 use clap::Args;
+use miette::Report;
 use palmistry::checker::VerdictFile;
 use palmistry::drops::{DropAnswer, where_it_drops_telling};
 use palmistry::evidence::rank_records;
+use palmistry::file::note;
 use palmistry::observability::SOLUTIONS_WORK;
 use palmistry::report::{
     StateTableWriter, TableForm, accessibility_json, accessibility_text, drops_json, drops_page, drops_text,
@@ -21,6 +23,7 @@ use palmistry::sweep::{
 };
 use palmistry::{RankQuestion, System};
 use serde_json::json;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -138,15 +141,15 @@ enum SoFar {
 }
 
 impl SoFar {
-    /// Tells it where the work is not waited for.
-    fn tell(&self, form: Form) -> miette::Result<Status> {
+    /// Tells it where the work is not waited for, or was cut off.
+    fn tell(&self, form: Form, cut_off: Option<&str>) -> miette::Result<Status> {
         let files = Files::default();
         match self {
             SoFar::Nothing => nothing_found(form),
             SoFar::Rank(file, branches) => files.print(
                 form,
-                rank_so_far_json(file, branches),
-                || rank_so_far_text(file, branches),
+                rank_so_far_json(file, branches, cut_off),
+                || rank_so_far_text(file, branches, cut_off),
                 Status::CutOff,
             ),
             SoFar::Values(answer) => {
@@ -169,7 +172,7 @@ impl Rank {
         let known = Arc::new(Mutex::new(SoFar::Nothing));
         let kept = known.clone();
         let put = move |so_far| *kept.lock().unwrap_or_else(PoisonError::into_inner) = so_far;
-        let left = move || known.lock().unwrap_or_else(PoisonError::into_inner).clone().tell(form);
+        let left = move || known.lock().unwrap_or_else(PoisonError::into_inner).clone().tell(form, None);
         watched(move || self.work(&put), left)
     }
 
@@ -178,10 +181,35 @@ impl Rank {
         if self.where_it_drops {
             return self.tell_where(&mut system, known);
         }
-        if self.global {
-            return self.tell_values(&mut system, known);
+        // what is known is also told where the work is cut off
+        let last = RefCell::new(SoFar::Nothing);
+        let known = &|so_far: SoFar| {
+            last.replace(so_far.clone());
+            known(so_far);
+        };
+        match self.looked_at(&mut system, known) {
+            Err(Ended::CutOff(why)) => {
+                let known = last.into_inner();
+                if matches!(known, SoFar::Nothing) {
+                    return Err(Unusable::report(why, "nothing was found before"));
+                }
+                begin_to_tell();
+                if !matches!(known, SoFar::Rank(..)) {
+                    note(&why);
+                }
+                known.tell(Form::of(self.json), Some(&why))
+            }
+            Err(Ended::Unusable(why)) => Err(why),
+            Ok(status) => Ok(status),
         }
-        let fixed: BTreeMap<_, _> = system.given_values(&self.at)?.into_iter().collect();
+    }
+
+    fn looked_at(&self, system: &mut System, known: &dyn Fn(SoFar)) -> Result<Status, Ended> {
+        if self.global {
+            return self.tell_values(system, known);
+        }
+        let fixed: BTreeMap<_, _> =
+            system.given_values(&self.at).map_err(Report::from)?.into_iter().collect();
         let samples = self.samples.unwrap_or(RankQuestion::default().samples);
         let bar = progress(samples, "sampling states");
         let question = &RankQuestion {
@@ -197,10 +225,10 @@ impl Rank {
             progress: &|done| bar.set_position(done),
         };
         if self.accessible {
-            return accessible(&mut system, question, &bar, known, self.json);
+            return accessible(system, question, &bar, known, self.json);
         }
         let nothing_asked = self.samples.is_none() && self.order.is_none() && self.verdicts.is_none();
-        let asked = RankPreparation::fingerprint(&system, question, nothing_asked);
+        let asked = RankPreparation::fingerprint(system, question, nothing_asked);
         let parts = Parts {
             kind: "rank",
             extension: ".json",
@@ -210,7 +238,7 @@ impl Rank {
         let form = Form::of(self.json);
         if let Some(missing) = &self.shards.missing {
             begin_to_tell();
-            return parts.tell_missing(missing, form);
+            return Ok(parts.tell_missing(missing, form)?);
         }
         let prepare = |system: &mut System| {
             let (file, mut branches) = (system.name.clone(), Vec::new());
@@ -219,40 +247,43 @@ impl Rank {
                 known(SoFar::Rank(file.clone(), branches.clone()));
             };
             let prepared = RankPreparation::telling(system, question, nothing_asked, &mut tell);
-            prepared.map_err(|why| Unusable::report(why.to_string(), ""))
+            prepared.map_err(Ended::from)
         };
         if let (Some(shard), Some(folder)) = (self.shards.shard, &self.shards.part) {
-            return parts.do_shard(shard, folder, self.table.as_deref(), form, |files| {
+            let done = parts.do_shard(shard, folder, self.table.as_deref(), form, |files| {
                 let states = shard_of(samples, shard.number, shard.of);
                 bar.set_length(states.end - states.start);
-                let prepared = prepare(&mut system)?;
-                let part = self.sweep(&system, &prepared, states, files)?;
+                let prepared = prepare(system)?;
+                let part = self.sweep(system, &prepared, states, files)?;
                 bar.finish_and_clear();
                 Ok(part.text())
             });
+            return Ok(done?);
         }
-        let (mut files, prepared) = (Files::default(), prepare(&mut system)?);
+        let (mut files, prepared) = (Files::default(), prepare(system)?);
         let parts = match &self.shards.merge {
             Some(folder) => parts.all(folder)?,
-            None => vec![(String::new(), self.sweep(&system, &prepared, 0..samples, &mut files)?)],
+            None => vec![(String::new(), self.sweep(system, &prepared, 0..samples, &mut files)?)],
         };
-        let answer = prepared.answer(&mut system, parts);
+        let answer = prepared.answer(system, parts);
         bar.finish_and_clear();
-        let help = if self.shards.merge.is_some() { NO_WHOLE } else { "" };
-        let mut answer = answer.map_err(|why| Unusable::report(why.to_string(), help))?;
+        let mut answer = answer.map_err(|why| match why {
+            RankError::Merge(_) => Unusable::report(why.to_string(), NO_WHOLE).into(),
+            _ => Ended::from(why),
+        })?;
         if self.no_times {
             answer.forget_times();
         }
         begin_to_tell();
         if let Some(path) = &self.verdicts {
-            let records = rank_records(&mut system, &answer, &self.conditions);
+            let records = rank_records(system, &answer, &self.conditions);
             let text = records.map_err(|why| why.to_string()).and_then(|records| {
                 VerdictFile::new(self.seed, records).text().map_err(|why| why.to_string())
             });
             files.text_or(path, text);
         }
         let written = self.reparametrise.as_ref().map(|path| {
-            let written = reparametrisation(&system, &answer, &self.file, path);
+            let written = reparametrisation(system, &answer, &self.file, path);
             files.text_or(path, written.as_ref().map(|found| found.text.clone()).map_err(String::clone));
             written
         });
@@ -266,7 +297,7 @@ impl Rank {
         };
         let status =
             if answer.interrupted() || answer.cut_off() { Status::CutOff } else { Status::AsExpected };
-        files.print(form, object, text, status)
+        Ok(files.print(form, object, text, status)?)
     }
 
     /// Looks at some states, and writes the table of them where one is wanted.
@@ -312,14 +343,14 @@ impl Rank {
     }
 
     /// How many values of each unknown give the same outputs.
-    fn tell_values(&self, system: &mut System, known: &dyn Fn(SoFar)) -> miette::Result<Status> {
+    fn tell_values(&self, system: &mut System, known: &dyn Fn(SoFar)) -> Result<Status, Ended> {
         let mut tell = |answer| known(SoFar::Values(Box::new(answer)));
-        let answer = answer_solutions_telling(system, self.work, &INTERRUPTED, &mut tell)
-            .map_err(|why| Unusable::report(why.to_string(), ""))?;
+        let answer = answer_solutions_telling(system, self.work, &INTERRUPTED, &mut tell)?;
         begin_to_tell();
         let status =
             if answer.is_final() && !answer.interrupted { Status::AsExpected } else { Status::CutOff };
-        Files::default().print(Form::of(self.json), global_json(&answer), || global_text(&answer), status)
+        let files = Files::default();
+        Ok(files.print(Form::of(self.json), global_json(&answer), || global_text(&answer), status)?)
     }
 
     /// The exact set on which the rank drops.
@@ -339,6 +370,38 @@ impl Rank {
     }
 }
 
+/// Why there is no answer.
+enum Ended {
+    /// It takes more than a question may: what was found before is told.
+    CutOff(String),
+    /// Something cannot be used.
+    Unusable(Report),
+}
+
+impl From<RankError> for Ended {
+    fn from(why: RankError) -> Ended {
+        match why {
+            RankError::CutOff(_) => Ended::CutOff(why.to_string()),
+            _ => Ended::Unusable(Unusable::report(why.to_string(), "")),
+        }
+    }
+}
+
+impl From<Ended> for Report {
+    fn from(why: Ended) -> Report {
+        match why {
+            Ended::CutOff(why) => Unusable::report(why, ""),
+            Ended::Unusable(why) => why,
+        }
+    }
+}
+
+impl From<Report> for Ended {
+    fn from(why: Report) -> Ended {
+        Ended::Unusable(why)
+    }
+}
+
 /// The answer to the dual question.
 fn accessible(
     system: &mut System,
@@ -346,18 +409,14 @@ fn accessible(
     bar: &indicatif::ProgressBar,
     known: &dyn Fn(SoFar),
     json: bool,
-) -> miette::Result<Status> {
+) -> Result<Status, Ended> {
     let mut tell = |answer| known(SoFar::Accessible(Box::new(answer)));
     let answer = answer_accessibility_telling(system, question, &mut tell);
     bar.finish_and_clear();
-    let answer = answer.map_err(|why| Unusable::report(why.to_string(), ""))?;
+    let answer = answer?;
     begin_to_tell();
     let is_whole = answer.is_final() && !answer.interrupted();
     let status = if is_whole { Status::AsExpected } else { Status::CutOff };
-    Files::default().print(
-        Form::of(json),
-        accessibility_json(&answer),
-        || accessibility_text(&answer),
-        status,
-    )
+    let files = Files::default();
+    Ok(files.print(Form::of(json), accessibility_json(&answer), || accessibility_text(&answer), status)?)
 }

@@ -86,6 +86,22 @@ impl Share {
     }
 }
 
+/// Whether the work of this thread is paid from a budget.
+pub fn is_counted() -> bool {
+    HERE.with_borrow(Option::is_some)
+}
+
+/// Does work that owns what it changes, paid by whoever asked: from the budget of this thread where it has one, otherwise from a new one.
+///
+/// # Errors
+/// The new one is used up. Where the thread has one, its end is met where that one began.
+pub fn paid<T>(allowed: Allowance, work: impl FnOnce() -> T) -> Result<T, Spent> {
+    match is_counted() {
+        true => Ok(work()),
+        false => Arc::new(Budget::new(allowed)).within(work),
+    }
+}
+
 /// Puts back the budget of before, also when the stack is unwound.
 struct Restored(Option<Arc<Budget>>);
 
@@ -235,6 +251,15 @@ mod tests {
         });
         assert_eq!(both, Ok(()));
         assert_eq!((outer.spent().nodes, outer.spent().bytes, inner.spent().nodes), (1, 2, 11));
+    }
+
+    #[test]
+    fn who_asks_within_a_budget_pays_from_it() {
+        let outer = Arc::new(Budget::new(SOME));
+        let ended = outer.within(|| paid(Allowance { bytes: 0, nodes: 0, steps: 0 }, || nodes(3)));
+        assert_eq!((ended, outer.spent().nodes), (Ok(Ok(())), 3));
+        assert_eq!(outer.within(|| paid(SOME, || nodes(8))), Err(Spent::Nodes(10)));
+        assert_eq!(paid(SOME, || nodes(11)), Err(Spent::Nodes(10)));
     }
 
     #[test]

@@ -7,6 +7,7 @@ use super::progress::{Limits, Progress, Searches};
 use super::rows::RegionRows;
 use super::search::Plane;
 use dashu::rational::RBig;
+use palmistry_budget::{OF_A_QUESTION, paid};
 use palmistry_io::UNINTERRUPTED;
 use palmistry_lang::System;
 use palmistry_math::expression::Symbol;
@@ -34,7 +35,11 @@ impl Region {
         ranges: &BTreeMap<Symbol, (RBig, RBig)>,
         map: Option<(Symbol, Symbol)>,
     ) -> Result<Region, String> {
-        let problem = Problem::new(system, rows, ranges)?;
+        // what is done once is paid from a budget; boxes are looked at as often as the user asks
+        let mut copy = system.clone();
+        let problem = paid(OF_A_QUESTION, || Problem::new(&mut copy, rows, ranges))
+            .map_err(|spent| format!("cut off: {spent}, and no question may take more"))??;
+        *system = copy;
         let map = match map {
             Some((x, y)) => {
                 let place = |symbol: Symbol| {

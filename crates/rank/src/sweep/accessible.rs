@@ -2,6 +2,7 @@
 
 use super::asked::{RankQuestion, held_conditions};
 use super::certainty::Certainty;
+use super::paid::paid_on_a_copy;
 use super::prepared::sweep;
 use super::question::{RankError, guarded, held_parameters};
 use super::states::{SweepOptions, SweepReport};
@@ -151,7 +152,9 @@ pub fn answer_accessibility_telling(
             });
             tell(so_far);
         };
-        let found = Accessibility::new(system, &conditions, question.order, &mut tell_of)?;
+        let found = paid_on_a_copy(system, |system| {
+            Ok(Accessibility::new(system, &conditions, question.order, &mut tell_of)?)
+        })?;
         let leave = |system: &mut System, columns: &[Symbol]| {
             system.known = system.states.iter().copied().filter(|state| !columns.contains(state)).collect();
         };
@@ -180,7 +183,7 @@ pub fn answer_accessibility_telling(
                     return Ok(bounds);
                 }
                 system.known = known.clone();
-                let minor = found.minor(system, &conditions, strong)?;
+                let minor = paid_on_a_copy(system, |system| Ok(found.minor(system, &conditions, strong)?))?;
                 leave(system, &minor.columns);
                 let few = SweepOptions {
                     samples: question.samples.min(STATES_OF_A_MINOR),

@@ -18,6 +18,7 @@ mod fingerprint;
 mod given_states;
 mod ladder;
 mod left;
+mod paid;
 mod part;
 mod part_text;
 mod preparation;

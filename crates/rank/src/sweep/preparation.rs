@@ -6,6 +6,7 @@ use super::cells::by_signs;
 use super::fingerprint::{Fingerprint, of_question};
 use super::given_states::GivenStates;
 use super::left::left_by_inequalities;
+use super::paid::paid_on_a_copy;
 use super::part::{BranchCounts, MergeError, RankPart};
 use super::prepared_branch::{Extent, PreparedBranch};
 use super::question::{GenericOnBranch, RankAnswer, RankError};
@@ -76,8 +77,17 @@ impl<'q> RankPreparation<'q> {
     /// The one or the other, and tells of each branch what holds at almost all of its states as soon as that is known.
     ///
     /// # Errors
-    /// As for [`RankPreparation::new`].
+    /// As for [`RankPreparation::new`], and where it takes more than a question may.
     pub fn telling(
+        system: &mut System,
+        question: &'q RankQuestion<'q>,
+        only_if_short: bool,
+        known: &mut dyn FnMut(GenericOnBranch),
+    ) -> Result<Self, RankError> {
+        paid_on_a_copy(system, |system| RankPreparation::prepared(system, question, only_if_short, known))
+    }
+
+    fn prepared(
         system: &mut System,
         question: &'q RankQuestion<'q>,
         only_if_short: bool,
@@ -223,7 +233,7 @@ impl<'q> RankPreparation<'q> {
         for (branch, counts) in self.branches.into_iter().zip(whole.branches) {
             let cell = branch.cell.clone();
             let work = |system: &mut System| branch.answer(system, question, own.as_deref(), counts);
-            branches.push(in_sign_cell(system, &cell, work)?);
+            branches.push(paid_on_a_copy(system, |system| in_sign_cell(system, &cell, work))?);
         }
         Ok(RankAnswer {
             file: system.name.clone(),

@@ -8,6 +8,7 @@ use crate::observability::{
     Branch, CodistributionError, Frame, GenericAnswer, LocusError, Stop, UnseenMotions, Unsolved,
 };
 use dashu::rational::RBig;
+use palmistry_budget::Spent;
 use palmistry_lang::{Assignment, FieldRole, Range, SymbolInfo, System, Time, UnknownKind};
 use palmistry_math::expression::{NodeId, Symbol};
 use std::collections::HashSet;
@@ -160,6 +161,9 @@ pub enum RankError {
     /// Parts that do not make a whole.
     #[error(transparent)]
     Merge(#[from] MergeError),
+    /// Lie derivatives or brackets are too large, or what is to be decided about them is too much work.
+    #[error("cut off: {0}, and no question may take more")]
+    CutOff(#[from] Spent),
 }
 
 /// The parameters with a value in the file, and no other from the question, that outputs, fields and own rows mention.

@@ -1,6 +1,7 @@
 //! How many values of each unknown give the same outputs: the question as it is asked of a file.
 
 use super::asked::held_conditions;
+use super::paid::paid_for_memory;
 use super::question::{RankError, held_parameters, named_unknowns};
 use super::{Certainty, RankQuestion};
 use crate::observability::{
@@ -114,7 +115,9 @@ pub fn answer_solutions_telling(
         }
         GlobalAnswer { solutions, seconds: begin.elapsed().as_secs_f64(), ..blank.clone() }
     };
-    let found = solutions_telling(system, &question, &mut |so_far| known(finished(so_far)))?;
+    let found = paid_for_memory(system, |system| {
+        Ok(solutions_telling(system, &question, &mut |so_far| known(finished(so_far)))?)
+    })?;
     let answer = finished(found);
     // what is final has lost nothing
     let interrupted = interrupt.load(Ordering::Relaxed) && !answer.is_final();

@@ -73,23 +73,30 @@ pub(crate) fn generic_sentence(generic: &GenericAnswer) -> String {
 }
 
 /// What is known where somebody did not wait for the states, as one object.
-pub fn rank_so_far_json(file: &str, branches: &[GenericOnBranch]) -> Value {
+pub fn rank_so_far_json(file: &str, branches: &[GenericOnBranch], cut_off: Option<&str>) -> Value {
     let branch = |branch: &GenericOnBranch| {
         let mut object = json!({ "conditions": branch.conditions });
         add_generic_json(&branch.generic, &branch.unknowns, &mut object);
         object
     };
-    json!({
+    let mut object = json!({
         "file": file,
-        "interrupted": true,
+        "interrupted": cut_off.is_none(),
         "samples": 0,
         "branches": branches.iter().map(branch).collect::<Vec<_>>(),
-    })
+    });
+    if let Some(why) = cut_off {
+        object["cut_off"] = json!(why);
+    }
+    object
 }
 
 /// The same as text.
-pub fn rank_so_far_text(file: &str, branches: &[GenericOnBranch]) -> String {
-    let mut out = format!("{file}: interrupted before states were looked at\n");
+pub fn rank_so_far_text(file: &str, branches: &[GenericOnBranch], cut_off: Option<&str>) -> String {
+    let mut out = match cut_off {
+        Some(why) => format!("{file}: {why}\n"),
+        None => format!("{file}: interrupted before states were looked at\n"),
+    };
     for branch in branches {
         if !branch.conditions.is_empty() {
             let _ = writeln!(out, "where {}", branch.conditions.join(", "));
