@@ -72,6 +72,9 @@ pub use palmistry_import as import;
 
 pub use palmistry_checker as checker;
 
+#[doc(hidden)]
+pub use palmistry_coq as coq;
+
 pub use palmistry_rank::{observability, sweep};
 
 pub use palmistry_prove::{certificate, claim};

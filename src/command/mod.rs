@@ -11,6 +11,7 @@ mod certify;
 mod check;
 mod claims;
 mod completions;
+mod coq;
 mod demo;
 mod eval;
 mod fmt;

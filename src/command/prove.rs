@@ -2,14 +2,16 @@
 
 use super::Status;
 use super::claims::{Claims, no_claims};
+use super::coq::Theorems;
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
 use super::output::{Form, progress};
 use super::watch::Watch;
 use clap::Args;
-use palmistry::Outcome;
 use palmistry::claim::decide_all_keeping;
 use palmistry::report::ClaimsSummary;
+use palmistry::{Outcome, System};
 use std::collections::HashMap;
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
@@ -25,14 +27,20 @@ use std::time::Instant;
   palmistry prove proofs/ -q                only what is not as expected: statement, place, both sides at a witness
   palmistry prove mysystem.proof --only 4.48 --only 'reduce.*'
   palmistry prove mysystem.proof --watch    again whenever the file is changed
+  palmistry prove mysystem.proof --coq theorems
   palmistry prove proofs/ --junit claims.xml --verdicts claims.json")]
 pub(crate) struct Prove {
     #[command(flatten)]
     pub claims: Claims,
     /// Decide again whenever a file is changed, or one that it imports, until it is interrupted. Only files that are changed,
     /// or import what is changed, are decided again. With --json each report is one line.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "coq")]
     pub watch: bool,
+    /// Write what is proved as theorems for the proof assistant Coq into this folder: a file for each proof file, with its definitions and
+    /// fields, and a library that is proved there. Coq computes all derivatives anew. Identities are written, with conditions that
+    /// give a variable; what is left out stands at the end of each file.
+    #[arg(long, value_name = "DIR")]
+    pub coq: Option<PathBuf>,
 }
 
 /// What is decided so far.
@@ -44,6 +52,8 @@ struct Decided {
     places: HashMap<(String, String), usize>,
     /// As they were decided.
     outcomes: Vec<Outcome>,
+    /// The files, where theorems are to be written.
+    systems: Vec<System>,
 }
 
 impl Prove {
@@ -78,6 +88,9 @@ impl Prove {
             let mut decided = hold(decided);
             decided.claims = Some(claims);
             decided.places = names.into_iter().zip(0..).collect();
+            if self.coq.is_some() {
+                decided.systems.clone_from(&systems);
+            }
         }
         let bar = progress(claims as u64, "deciding claims");
         for system in &systems {
@@ -93,16 +106,28 @@ impl Prove {
 
     /// Prints and writes what is decided, in the order of the files.
     fn tell(&self, decided: &Mutex<Decided>, begin: Instant) -> miette::Result<Status> {
-        let Decided { claims, places, mut outcomes } = std::mem::take(&mut *hold(decided));
+        let Decided { claims, places, mut outcomes, systems } = std::mem::take(&mut *hold(decided));
         outcomes
             .sort_by_cached_key(|outcome| places.get(&(outcome.file.clone(), outcome.id.clone())).copied());
         let whole = claims == Some(outcomes.len());
         let as_expected = outcomes.iter().all(|outcome| outcome.ok) && (whole || interrupted());
         let status = Status::of(as_expected);
         let summary = ClaimsSummary { claims, seconds: begin.elapsed().as_secs_f64() };
-        let object = self.claims.object(&outcomes, summary.seconds);
-        let in_words = || self.claims.in_words(&outcomes, summary);
-        self.claims.written(&outcomes).print(Form::of(self.claims.json), object, in_words, status)
+        let mut object = self.claims.object(&outcomes, summary.seconds);
+        let mut files = self.claims.written(&outcomes);
+        let theorems = self.coq.as_ref().map(|folder| Theorems::of(folder, &systems, &outcomes));
+        if let Some(theorems) = &theorems {
+            theorems.write(&mut files);
+            object["theorems"] = theorems.object();
+        }
+        let in_words = || {
+            let mut text = self.claims.in_words(&outcomes, summary);
+            if let Some(theorems) = &theorems {
+                text.push_str(&theorems.in_words());
+            }
+            text
+        };
+        files.print(Form::of(self.claims.json), object, in_words, status)
     }
 }
 

@@ -19,6 +19,7 @@ mod domain;
 mod drawn;
 mod elaborate;
 mod enter_field;
+mod entries;
 mod error;
 mod examine;
 mod excerpt;
@@ -50,6 +51,8 @@ mod written;
 #[doc(hidden)]
 pub use determinant::determinant;
 pub use dimension::{Base, Dimension, ScaledUnit, scaled_unit};
+#[doc(hidden)]
+pub use entries::{Entry, entries_of};
 pub use error::ReadError;
 #[doc(hidden)]
 pub use error::{Problem, boundary, line_and_column, nearest};
