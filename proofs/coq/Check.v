@@ -80,6 +80,7 @@ Fixpoint quarters (e : term) : option Z :=
   | Mul (Cst z) a => option_map (Z.mul z) (quarters a)
   | Mul a (Inv (Cst 2)) =>
       match quarters a with Some n => if Z.even n then Some (Z.div2 n) else None | None => None end
+  | Mul _ (Cst 0) => Some 0%Z
   | _ => None
   end.
 Lemma quarters_ok x e : forall n, quarters e = Some n -> eval x e = IZR n * (PI / 2).
@@ -93,8 +94,10 @@ Proof.
   - destruct z; try discriminate. intros [= <-]. cbn. lra.
   - intros [= <-]. cbn. lra.
   - assert (right : match e2 with Inv (Cst 2) => match quarters e1 with Some n => if Z.even n then Some (Z.div2 n) else None | None => None end
-      | _ => None end = Some k -> eval x (Mul e1 e2) = IZR k * (PI / 2)).
-    { destruct e2; try discriminate. destruct e2; try discriminate. destruct z; try discriminate.
+      | Cst 0 => Some 0%Z | _ => None end = Some k -> eval x (Mul e1 e2) = IZR k * (PI / 2)).
+    { destruct e2; try discriminate.
+      { destruct z; try discriminate. intros [= <-]. cbn. ring. }
+      destruct e2; try discriminate. destruct z; try discriminate.
       destruct p; try discriminate. destruct p; try discriminate.
       destruct (quarters e1) as [m|]; [|discriminate]. destruct (Z.even m) eqn:E; [|discriminate].
       intros [= <-]. cbn [eval]. apply half; auto. }

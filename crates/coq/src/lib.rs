@@ -9,6 +9,7 @@
 #![warn(missing_docs)]
 
 mod definitions;
+mod foreseen;
 mod names;
 mod printer;
 mod theorem;

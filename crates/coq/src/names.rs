@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 /// Words of Coq that are no names, and names that the library or what is printed here uses.
-const TAKEN: [&str; 100] = [
+const TAKEN: [&str; 114] = [
     "Add",
     "AtMost",
     "Atan",
@@ -47,6 +47,20 @@ const TAKEN: [&str; 100] = [
     "at",
     "beside",
     "bracket",
+    "by",
+    "IF",
+    "SProp",
+    "_",
+    "Abs",
+    "Sign",
+    "Atan2",
+    "Tan",
+    "Cot",
+    "Sec",
+    "Csc",
+    "Sinh",
+    "Cosh",
+    "Tanh",
     "cofix",
     "column_of",
     "cons",

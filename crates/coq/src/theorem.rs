@@ -1,9 +1,13 @@
 //! A file of theorems.
 
 use crate::definitions::Definitions;
+use crate::foreseen::foreseen;
 use crate::names::{Names, in_comment};
 use crate::printer::{Kind, Printer, Reason};
-use palmistry_lang::{ClaimBody, ClaimSyntax, Expectation, Statement, System, in_one_line};
+use palmistry_lang::{
+    Assignment, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line,
+};
+use palmistry_math::expression::NodeId;
 use palmistry_math::expression::syntax::{Equation, Expr, ExprKind, Relation};
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -118,6 +122,10 @@ fn theorems_of(
         let mut printer = definitions.outermost(system, names);
         let said = said(&mut printer, equation, &statement.conditions)?;
         let uses = printer.used;
+        let mut system = system.clone();
+        for difference in differences(&mut system, equation, &statement.conditions)? {
+            foreseen(&system.graph, difference)?;
+        }
         let ident = if count == 1 { ident.clone() } else { format!("{ident}_part_{number}") };
         let comment = in_comment(&in_one_line(&system.source, &statement.span));
         let text = format!(
@@ -170,4 +178,38 @@ fn condition_of(printer: &mut Printer<'_>, condition: &Equation) -> Result<Strin
         Relation::AtLeast => ">=",
     };
     Ok(format!("{} {sign} {}", left.text, right.text))
+}
+
+/// Left sides less right sides, entry by entry, with what conditions give put in.
+fn differences(
+    system: &mut System,
+    equation: &Equation,
+    conditions: &[Equation],
+) -> Result<Vec<NodeId>, Reason> {
+    let mut given = Assignment::new();
+    for condition in conditions.iter().rev().filter(|condition| condition.relation == Relation::Equal) {
+        let sides = [(&condition.left, &condition.right), (&condition.right, &condition.left)];
+        let symbol = |side: &Expr| match &side.kind {
+            ExprKind::Name(name) => system.find_symbol(name),
+            _ => None,
+        };
+        // the first of two that can be given is, as in the library
+        let found = sides.into_iter().find_map(|(name, value)| Some((symbol(name)?, value)));
+        if let Some((symbol, value)) = found {
+            let value = system.scalar(value).map_err(|problem| problem.message)?;
+            given.insert(symbol, value);
+        }
+    }
+    let mut entries = |side: &Expr| match system.elaborate(side).map_err(|problem| problem.message)? {
+        Value::Scalar(one) => Ok(vec![one]),
+        Value::Matrix(matrix) => Ok(matrix.entries),
+        other => Err(other.describe()),
+    };
+    let (left, right) = (entries(&equation.left)?, entries(&equation.right)?);
+    let mut found: Vec<NodeId> =
+        left.into_iter().zip(right).map(|(left, right)| system.graph.sub(left, right)).collect();
+    for _ in 0..given.len() {
+        found = system.graph.substitute(&found, &given);
+    }
+    Ok(found)
 }
