@@ -74,7 +74,7 @@ impl Theorems {
         let folder = shown_path(&self.folder);
         format!(
             "{folder}: {theorems} of {} claims as theorems; the others are listed with reasons at the end of each file\n\
-             check them there: coq_makefile -f _CoqProject -o Makefile && make\n",
+             check them there: coq_makefile -f _CoqProject -o Makefile && make",
             theorems + left_out
         )
     }

@@ -123,6 +123,7 @@ impl Prove {
         let in_words = || {
             let mut text = self.claims.in_words(&outcomes, summary);
             if let Some(theorems) = &theorems {
+                text.push('\n');
                 text.push_str(&theorems.in_words());
             }
             text

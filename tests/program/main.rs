@@ -5,6 +5,7 @@ mod common;
 
 mod appendix;
 mod benchmarks;
+mod coq;
 mod damaged;
 mod editors;
 mod harm;

@@ -14,4 +14,4 @@ mod names;
 mod printer;
 mod theorem;
 
-pub use theorem::{Exported, LeftOut, exported};
+pub use theorem::{Exported, NoTheorem, exported, stated};

@@ -19,11 +19,11 @@ pub struct Exported {
     /// The claims that are theorems in it, by their ids.
     pub claims: Vec<String>,
     /// The others.
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<NoTheorem>,
 }
 
 /// A claim that is no theorem.
-pub struct LeftOut {
+pub struct NoTheorem {
     /// Its id.
     pub id: String,
     /// Why, in words.
@@ -36,8 +36,18 @@ struct Theorem {
     uses: BTreeSet<String>,
 }
 
-/// The theorems of a file, of those of its claims that are `wanted`: that a claim is proved is for others to say.
+/// The theorems of a file, of those of its claims that are `wanted`: that a claim is proved is for others to say. What the library is not
+/// expected to prove, or not in time, is left out.
 pub fn exported(system: &System, wanted: &dyn Fn(&str) -> Result<(), String>) -> Exported {
+    written(system, wanted, true)
+}
+
+/// The same, whether or not it is to be expected that the library proves them.
+pub fn stated(system: &System, wanted: &dyn Fn(&str) -> Result<(), String>) -> Exported {
+    written(system, wanted, false)
+}
+
+fn written(system: &System, wanted: &dyn Fn(&str) -> Result<(), String>, to_be_proved: bool) -> Exported {
     let mut names = Names::default();
     let mut definitions = Definitions::default();
     definitions.add(system, "", &mut names);
@@ -45,13 +55,17 @@ pub fn exported(system: &System, wanted: &dyn Fn(&str) -> Result<(), String>) ->
     for claim in &system.claims {
         let found = statement_of(claim)
             .and_then(|statement| wanted(&claim.id).map(|()| statement))
-            .and_then(|statement| theorems_of(system, claim, statement, &definitions, &mut names));
+            .and_then(|statement| theorems_of(system, claim, statement, &definitions, &mut names))
+            .and_then(|theorems| {
+                let expected = if to_be_proved { is_expected(system, claim) } else { Ok(()) };
+                expected.map(|()| theorems)
+            });
         match found {
             Ok(found) => {
                 claims.push(claim.id.clone());
                 theorems.extend(found);
             }
-            Err(reason) => left_out.push(LeftOut { id: claim.id.clone(), reason }),
+            Err(reason) => left_out.push(NoTheorem { id: claim.id.clone(), reason }),
         }
     }
     let used = theorems.iter().flat_map(|theorem| &theorem.uses).cloned().collect();
@@ -122,10 +136,6 @@ fn theorems_of(
         let mut printer = definitions.outermost(system, names);
         let said = said(&mut printer, equation, &statement.conditions)?;
         let uses = printer.used;
-        let mut system = system.clone();
-        for difference in differences(&mut system, equation, &statement.conditions)? {
-            foreseen(&system.graph, difference)?;
-        }
         let ident = if count == 1 { ident.clone() } else { format!("{ident}_part_{number}") };
         let comment = in_comment(&in_one_line(&system.source, &statement.span));
         let text = format!(
@@ -135,6 +145,18 @@ fn theorems_of(
         found.push(Theorem { text, uses });
     }
     Ok(found)
+}
+
+/// Whether the library is expected to prove all that a claim says.
+fn is_expected(system: &System, claim: &ClaimSyntax) -> Result<(), Reason> {
+    let statement = statement_of(claim)?;
+    let mut system = system.clone();
+    for equation in statement.relations() {
+        for difference in differences(&mut system, equation, &statement.conditions)? {
+            foreseen(&system.graph, difference)?;
+        }
+    }
+    Ok(())
 }
 
 /// An equation, and what it is claimed under.
