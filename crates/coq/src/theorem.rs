@@ -136,7 +136,10 @@ fn theorems_of(
         let mut printer = definitions.outermost(system, names);
         let said = said(&mut printer, equation, &statement.conditions)?;
         let uses = printer.used;
-        let ident = if count == 1 { ident.clone() } else { format!("{ident}_part_{number}") };
+        let ident = match count {
+            1 => ident.clone(),
+            _ => names.of("claim", &format!("{} part {number}", claim.id)),
+        };
         let comment = in_comment(&in_one_line(&system.source, &statement.span));
         let text = format!(
             "(* {}: {comment} *)\nTheorem {ident} : {said}.\nProof. identity. Qed.\n",

@@ -48,6 +48,8 @@ mod tests {
     use palmistry_budget::Spent;
     use palmistry_lang::Assignment;
 
+    type Work = fn(&mut System) -> Result<usize, RankError>;
+
     fn brackets(system: &mut System) -> Result<usize, RankError> {
         Ok(Accessibility::new(system, &Assignment::new(), None, &mut |_| ())?.names.len())
     }
@@ -65,8 +67,7 @@ mod tests {
             input g  x' = 1  others' = 0
             output x*y
         "#;
-        let works: [(fn(&mut System) -> Result<usize, RankError>, usize); 2] =
-            [(brackets, 4), (lie_derivatives, 3)];
+        let works: [(Work, usize); 2] = [(brackets, 4), (lie_derivatives, 3)];
         for (work, found) in works {
             let mut system: System = text.parse().expect("a system");
             let before = system.graph.len();
