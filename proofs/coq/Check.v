@@ -6,7 +6,7 @@ Require Import Reals Lra Lia ZArith PArith NArith List Bool.
 Require Import Ring_theory Ring_polynom Field_theory RealField BinList InitialRing.
 From Palmistry Require Import Lie.
 Import ListNotations.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** * Polynomials with integer coefficients, as Coq's own ring tactic has them *)
 

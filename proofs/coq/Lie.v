@@ -6,7 +6,7 @@
 Require Import Reals Lra ZArith.
 Require Export PArith List.
 Export ListNotations.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** * Terms *)
 
@@ -112,7 +112,8 @@ Fixpoint subst (s : positive -> term) (e : term) : term :=
 (** * Matrices, by rows *)
 
 Notation matrix := (list (list term)).
-Definition entry (m : matrix) : term := nth 0 (nth 0 m []) (Cst 0).
+Definition entry_at (row column : nat) (m : matrix) : term := nth column (nth row m []) (Cst 0).
+Definition entry (m : matrix) : term := entry_at 0 0 m.
 Definition each (f : term -> term) (m : matrix) : matrix := map (map f) m.
 Fixpoint zip {A B C} (f : A -> B -> C) (l : list A) (r : list B) : list C :=
   match l, r with a :: l, b :: r => f a b :: zip f l r | _, _ => [] end.

@@ -9,14 +9,17 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// The library on which the theorems rest, as it stands in `proofs/coq`.
-const LIBRARY: [(&str, &str); 2] = [
+const LIBRARY: [(&str, &str); 3] = [
     ("Lie.v", include_str!("../../proofs/coq/Lie.v")),
     ("Check.v", include_str!("../../proofs/coq/Check.v")),
+    ("Point.v", include_str!("../../proofs/coq/Point.v")),
 ];
 
 /// What stands in a folder of theorems.
 pub(crate) struct Theorems {
     folder: PathBuf,
+    /// How many claims there are.
+    claims: usize,
     files: Vec<(String, String, Exported)>,
 }
 
@@ -40,7 +43,8 @@ impl Theorems {
             }
             (system.name.clone(), format!("{name}.v"), exported(system, &wanted))
         };
-        Theorems { folder: folder.to_owned(), files: systems.iter().map(file).collect() }
+        let claims = systems.iter().map(|system| system.claims.len()).sum();
+        Theorems { folder: folder.to_owned(), claims, files: systems.iter().map(file).collect() }
     }
 
     /// Writes them, the library, and what the tools of Coq need to know.
@@ -62,20 +66,21 @@ impl Theorems {
         let file = |(file, name, found): &(String, String, Exported)| {
             let left_out: Vec<Value> =
                 found.left_out.iter().map(|one| json!({ "id": one.id, "reason": one.reason })).collect();
-            json!({ "file": file, "coq": name, "theorems": found.claims, "left_out": left_out })
+            json!({ "file": file, "coq": name, "theorems": found.claims, "refuted": found.refuted, "left_out": left_out })
         };
         json!({ "folder": shown_path(&self.folder), "files": self.files.iter().map(file).collect::<Vec<_>>() })
     }
 
     /// In words, with what to do next.
     pub fn in_words(&self) -> String {
-        let theorems: usize = self.files.iter().map(|(_, _, found)| found.claims.len()).sum();
-        let left_out: usize = self.files.iter().map(|(_, _, found)| found.left_out.len()).sum();
+        let count =
+            |of: fn(&Exported) -> usize| self.files.iter().map(|(_, _, found)| of(found)).sum::<usize>();
+        let (theorems, refuted) = (count(|found| found.claims.len()), count(|found| found.refuted.len()));
         let folder = shown_path(&self.folder);
         format!(
-            "{folder}: {theorems} of {} claims as theorems; the others are listed with reasons at the end of each file\n\
+            "{folder}: {theorems} of {} claims as theorems, {refuted} wrong forms refuted at a state; others are at the end of each file, with reasons\n\
              check them there: coq_makefile -f _CoqProject -o Makefile && make",
-            theorems + left_out
+            self.claims
         )
     }
 }

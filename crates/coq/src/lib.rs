@@ -11,6 +11,7 @@
 mod definitions;
 mod foreseen;
 mod names;
+mod place;
 mod printer;
 mod theorem;
 

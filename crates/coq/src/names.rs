@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 /// Words of Coq that are no names, and names that the library or what is printed here uses.
-const TAKEN: [&str; 114] = [
+const TAKEN: [&str; 123] = [
     "Add",
     "AtMost",
     "Atan",
@@ -43,6 +43,15 @@ const TAKEN: [&str; 114] = [
     "Type",
     "Var",
     "above",
+    "anywhere",
+    "entry_at",
+    "Number",
+    "Angle",
+    "refuted",
+    "is_about_something",
+    "differs_at",
+    "defined_at",
+    "matrices_are_about_something",
     "as",
     "at",
     "beside",

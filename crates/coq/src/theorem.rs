@@ -3,12 +3,14 @@
 use crate::definitions::Definitions;
 use crate::foreseen::foreseen;
 use crate::names::{Names, in_comment};
-use crate::printer::{Kind, Printer, Reason};
+use crate::place::{Compared, Coordinate, Found, place};
+use crate::printer::{Kind, Printed, Printer, Reason};
+use dashu::rational::RBig;
 use palmistry_lang::{
     Assignment, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line,
 };
-use palmistry_math::expression::NodeId;
 use palmistry_math::expression::syntax::{Equation, Expr, ExprKind, Relation};
+use palmistry_math::expression::{NodeId, Symbol};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -16,9 +18,11 @@ use std::fmt::Write;
 pub struct Exported {
     /// A file of Coq, which needs the library.
     pub text: String,
-    /// The claims that are theorems in it, by their ids.
+    /// The claims whose statement is a theorem in it, by their ids.
     pub claims: Vec<String>,
-    /// The others.
+    /// The claims with a form that a theorem refutes at a state: what is claimed to be refuted, or a form in print.
+    pub refuted: Vec<String>,
+    /// The others, and forms in print of which there is no theorem.
     pub left_out: Vec<NoTheorem>,
 }
 
@@ -37,12 +41,12 @@ struct Theorem {
 }
 
 /// The theorems of a file, of those of its claims that are `wanted`: that a claim is proved is for others to say. What the library is not
-/// expected to prove, or not in time, is left out.
+/// expected to prove, or not in time, is left out. Forms that are wrong are refuted at a state in exact numbers, where one is found.
 pub fn exported(system: &System, wanted: &dyn Fn(&str) -> Result<(), String>) -> Exported {
     written(system, wanted, true)
 }
 
-/// The same, whether or not it is to be expected that the library proves them.
+/// The same without what is said at states, and whether or not it is to be expected that the library proves it.
 pub fn stated(system: &System, wanted: &dyn Fn(&str) -> Result<(), String>) -> Exported {
     written(system, wanted, false)
 }
@@ -51,23 +55,57 @@ fn written(system: &System, wanted: &dyn Fn(&str) -> Result<(), String>, to_be_p
     let mut names = Names::default();
     let mut definitions = Definitions::default();
     definitions.add(system, "", &mut names);
-    let (mut theorems, mut claims, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+    let mut found =
+        Exported { text: String::new(), claims: Vec::new(), refuted: Vec::new(), left_out: Vec::new() };
+    let mut theorems = Vec::new();
     for claim in &system.claims {
-        let found = statement_of(claim)
-            .and_then(|statement| wanted(&claim.id).map(|()| statement))
-            .and_then(|statement| theorems_of(system, claim, statement, &definitions, &mut names))
-            .and_then(|theorems| {
-                let expected = if to_be_proved { is_expected(system, claim) } else { Ok(()) };
-                expected.map(|()| theorems)
-            });
-        match found {
-            Ok(found) => {
-                claims.push(claim.id.clone());
-                theorems.extend(found);
+        let mut of = OfClaim { system, claim, definitions: &definitions, names: &mut names };
+        let (right, wrong) = statements_of(claim);
+        if let Some(statement) = right {
+            let proved = wanted(&claim.id).and_then(|()| of.identities(statement, to_be_proved));
+            match proved {
+                Ok(proved) => {
+                    found.claims.push(claim.id.clone());
+                    theorems.extend(proved);
+                }
+                Err(reason) => found.left_out.push(NoTheorem { id: claim.id.clone(), reason }),
             }
-            Err(reason) => left_out.push(NoTheorem { id: claim.id.clone(), reason }),
+        }
+        if let Some(statement) = wrong.filter(|_| to_be_proved) {
+            let id = if right.is_some() { format!("{}, in print", claim.id) } else { claim.id.clone() };
+            match of.refutation(statement) {
+                Ok(refuted) => {
+                    found.refuted.push(claim.id.clone());
+                    theorems.push(refuted);
+                }
+                Err(reason) => found.left_out.push(NoTheorem { id, reason }),
+            }
+        }
+        if right.is_none() && wrong.is_none() {
+            let reason = match &claim.body {
+                ClaimBody::Definition { .. } => "a definition",
+                ClaimBody::Open { .. } => "an open question",
+                _ => "it is undecided",
+            };
+            found.left_out.push(NoTheorem { id: claim.id.clone(), reason: reason.to_owned() });
         }
     }
+    found.text = file(system, &definitions, &theorems, &found.left_out);
+    found
+}
+
+/// The statement that is to hold, of a fault the right form; and the one that is not to.
+fn statements_of(claim: &ClaimSyntax) -> (Option<&Statement>, Option<&Statement>) {
+    match &claim.body {
+        ClaimBody::Claim { statement, expected: Expectation::Proved } => (Some(statement), None),
+        ClaimBody::Claim { statement, expected: Expectation::Refuted } => (None, Some(statement)),
+        ClaimBody::Erratum { printed, corrected, .. } => (Some(corrected), Some(printed)),
+        ClaimBody::Scan { repaired, .. } => (Some(repaired), None),
+        ClaimBody::Claim { .. } | ClaimBody::Definition { .. } | ClaimBody::Open { .. } => (None, None),
+    }
+}
+
+fn file(system: &System, definitions: &Definitions, theorems: &[Theorem], left_out: &[NoTheorem]) -> String {
     let used = theorems.iter().flat_map(|theorem| &theorem.uses).cloned().collect();
     let (needed, variables) = definitions.needed(&used);
     let mut text = format!("(* {}", in_comment(&system.title));
@@ -76,7 +114,7 @@ fn written(system: &System, wanted: &dyn Fn(&str) -> Result<(), String>, to_be_p
     }
     let _ = write!(
         text,
-        "\n   From {}. *)\n\nFrom Palmistry Require Import Lie Check.\nOpen Scope term_scope.\n\n",
+        "\n   From {}. *)\n\nFrom Palmistry Require Import Lie Check Point.\nOpen Scope term_scope.\n\n",
         in_comment(&system.name)
     );
     for (variable, number) in variables.iter().zip(1..) {
@@ -89,97 +127,201 @@ fn written(system: &System, wanted: &dyn Fn(&str) -> Result<(), String>, to_be_p
         text.push_str(&defined.text);
         text.push('\n');
     }
-    for theorem in &theorems {
+    for theorem in theorems {
         text.push('\n');
         text.push_str(&theorem.text);
     }
     if !left_out.is_empty() {
         text.push_str("\n(* No theorems:\n");
-        for one in &left_out {
+        for one in left_out {
             let _ = writeln!(text, "   {}: {}", in_comment(&one.id), in_comment(&one.reason));
         }
         text.push_str("*)\n");
     }
-    Exported { text, claims, left_out }
+    text
 }
 
-/// The statement that is to hold: of a fault the right form.
-fn statement_of(claim: &ClaimSyntax) -> Result<&Statement, Reason> {
-    match &claim.body {
-        ClaimBody::Claim { statement, expected: Expectation::Proved } => Ok(statement),
-        ClaimBody::Claim { expected: Expectation::Refuted, .. } => Err("it is refuted".to_owned()),
-        ClaimBody::Claim { .. } => Err("it is undecided".to_owned()),
-        ClaimBody::Erratum { corrected, .. } => Ok(corrected),
-        ClaimBody::Scan { repaired, .. } => Ok(repaired),
-        ClaimBody::Definition { .. } => Err("a definition".to_owned()),
-        ClaimBody::Open { .. } => Err("an open question".to_owned()),
+/// A claim, and where its theorems are written.
+struct OfClaim<'a> {
+    system: &'a System,
+    claim: &'a ClaimSyntax,
+    definitions: &'a Definitions,
+    names: &'a mut Names,
+}
+
+/// Both sides of an equation, and what it is claimed under.
+struct Said {
+    left: Printed,
+    right: Printed,
+    conditions: String,
+}
+
+impl OfClaim<'_> {
+    /// That the sides are equal, and that there is a state at which they have values, where one is found.
+    fn identities(&mut self, statement: &Statement, to_be_proved: bool) -> Result<Vec<Theorem>, Reason> {
+        refuse(statement)?;
+        let count = 1 + statement.further.len();
+        let mut found = Vec::new();
+        for (equation, number) in statement.relations().zip(1..) {
+            let name = match count {
+                1 => self.claim.id.clone(),
+                _ => format!("{} part {number}", self.claim.id),
+            };
+            let ident = self.names.of("claim", &name);
+            let (said, uses) = self.said(equation, &statement.conditions)?;
+            let sign = if said.left.kind == Kind::Number { "==" } else { "===" };
+            let under = if said.conditions.is_empty() {
+                String::new()
+            } else {
+                format!("\n  where {}", said.conditions)
+            };
+            let text = format!(
+                "{}Theorem {ident} : {}\n  {sign} {}{under}.\nProof. identity. Qed.\n",
+                self.comment(statement),
+                said.left.text,
+                said.right.text
+            );
+            found.push(Theorem { text, uses: uses.clone() });
+            if !to_be_proved {
+                continue;
+            }
+            let mut system = self.system.clone();
+            let compared = compared(&mut system, equation, &statement.conditions)?;
+            for difference in differences(&mut system, &compared) {
+                foreseen(&system.graph, difference)?;
+            }
+            if let Some(place) = place(&system, &compared, &self.variables(&uses), false) {
+                let ident = self.names.of("claim", &format!("{name} somewhere"));
+                let word = match said.left.kind {
+                    Kind::Number => "is_about_something",
+                    Kind::Matrix(..) => "matrices_are_about_something",
+                };
+                let text = format!(
+                    "Theorem {ident} : {word} {} {} {}.\nProof. defined_at {}. Qed.\n",
+                    said.listed(),
+                    said.left.argument(),
+                    said.right.argument(),
+                    self.state(&place)
+                );
+                found.push(Theorem { text, uses: uses_with(uses, &place, self) });
+            }
+        }
+        Ok(found)
+    }
+
+    /// That the sides differ at a state.
+    fn refutation(&mut self, statement: &Statement) -> Result<Theorem, Reason> {
+        refuse(statement)?;
+        if !statement.further.is_empty() {
+            return Err("several equations in one".to_owned());
+        }
+        let (said, uses) = self.said(&statement.equation, &statement.conditions)?;
+        let mut system = self.system.clone();
+        let compared = compared(&mut system, &statement.equation, &statement.conditions)?;
+        let found = place(&system, &compared, &self.variables(&uses), true);
+        let Some((found, entry)) = found.and_then(|found| found.differs.map(|entry| (found, entry))) else {
+            return Err("it is refuted, and no state in rational numbers was found".to_owned());
+        };
+        let side = |side: &Printed| match side.kind {
+            Kind::Number => side.argument(),
+            Kind::Matrix(_, columns) => {
+                format!("(entry_at {} {} {})", entry / columns, entry % columns, side.argument())
+            }
+        };
+        let ident = self.names.of("claim", &format!("{} refuted", self.claim.id));
+        let text = format!(
+            "{}Theorem {ident} : refuted {}\n  {}\n  {}.\nProof. differs_at {}. Qed.\n",
+            self.comment(statement),
+            said.listed(),
+            side(&said.left),
+            side(&said.right),
+            self.state(&found)
+        );
+        Ok(Theorem { text, uses: uses_with(uses, &found, self) })
+    }
+
+    /// The variables that these names rest on.
+    fn variables(&mut self, uses: &BTreeSet<String>) -> BTreeSet<Symbol> {
+        let (_, variables) = self.definitions.needed(uses);
+        let symbols: Vec<Symbol> = self.system.symbols().map(|(symbol, _)| symbol).collect();
+        let is_named =
+            |symbol: &Symbol| variables.contains(&self.names.of("value", self.system.symbol_name(*symbol)));
+        symbols.into_iter().filter(is_named).collect()
+    }
+
+    fn comment(&self, statement: &Statement) -> String {
+        let text = in_comment(&in_one_line(&self.system.source, &statement.span));
+        format!("(* {}: {text} *)\n", in_comment(&self.claim.id))
+    }
+
+    fn said(
+        &mut self,
+        equation: &Equation,
+        conditions: &[Equation],
+    ) -> Result<(Said, BTreeSet<String>), Reason> {
+        if equation.relation != Relation::Equal {
+            return Err("an inequality".to_owned());
+        }
+        if equation.within.is_some() {
+            return Err("a number with a tolerance".to_owned());
+        }
+        let mut printer = self.definitions.outermost(self.system, self.names);
+        let (left, right) = (printer.print(&equation.left)?, printer.print(&equation.right)?);
+        if left.kind != right.kind {
+            return Err("sides of two shapes".to_owned());
+        }
+        let list: Vec<String> = conditions
+            .iter()
+            .map(|condition| condition_of(&mut printer, condition))
+            .collect::<Result<_, _>>()?;
+        let conditions = if list.is_empty() { String::new() } else { format!("[{}]", list.join("; ")) };
+        Ok((Said { left, right, conditions }, printer.used))
+    }
+
+    /// A state, by its coordinates.
+    fn state(&mut self, found: &Found) -> String {
+        let number = |value: &RBig| match *value < RBig::ZERO {
+            true => format!("({}) {}", value.numerator(), value.denominator()),
+            false => format!("{} {}", value.numerator(), value.denominator()),
+        };
+        let coordinate = |(symbol, coordinate): &(Symbol, Coordinate)| {
+            let name = self.names.of("value", self.system.symbol_name(*symbol));
+            match coordinate {
+                Coordinate::Number(value) => format!("({name}, Number {})", number(value)),
+                Coordinate::Angle(half) => format!("({name}, Angle {})", number(half)),
+            }
+        };
+        match found.state.is_empty() {
+            true => "anywhere".to_owned(),
+            false => format!("[{}]", found.state.iter().map(coordinate).collect::<Vec<_>>().join("; ")),
+        }
     }
 }
 
-fn theorems_of(
-    system: &System,
-    claim: &ClaimSyntax,
-    statement: &Statement,
-    definitions: &Definitions,
-    names: &mut Names,
-) -> Result<Vec<Theorem>, Reason> {
+impl Said {
+    /// The conditions as an argument.
+    fn listed(&self) -> String {
+        if self.conditions.is_empty() { "[]".to_owned() } else { format!("({})%condition", self.conditions) }
+    }
+}
+
+/// What a theorem mentions, with the variables of a state.
+fn uses_with(mut uses: BTreeSet<String>, found: &Found, of: &mut OfClaim<'_>) -> BTreeSet<String> {
+    for (symbol, _) in &found.state {
+        uses.insert(of.names.of("value", of.system.symbol_name(*symbol)));
+    }
+    uses
+}
+
+/// What no equation of the library says.
+fn refuse(statement: &Statement) -> Result<(), Reason> {
     if statement.carried.is_some() {
         return Err("a number in print".to_owned());
     }
     if statement.except.is_some() {
         return Err("a rank at all states".to_owned());
     }
-    let ident = names.of("claim", &claim.id);
-    let count = 1 + statement.further.len();
-    let mut found = Vec::new();
-    for (equation, number) in statement.relations().zip(1..) {
-        let mut printer = definitions.outermost(system, names);
-        let said = said(&mut printer, equation, &statement.conditions)?;
-        let uses = printer.used;
-        let ident = match count {
-            1 => ident.clone(),
-            _ => names.of("claim", &format!("{} part {number}", claim.id)),
-        };
-        let comment = in_comment(&in_one_line(&system.source, &statement.span));
-        let text = format!(
-            "(* {}: {comment} *)\nTheorem {ident} : {said}.\nProof. identity. Qed.\n",
-            in_comment(&claim.id)
-        );
-        found.push(Theorem { text, uses });
-    }
-    Ok(found)
-}
-
-/// Whether the library is expected to prove all that a claim says.
-fn is_expected(system: &System, claim: &ClaimSyntax) -> Result<(), Reason> {
-    let statement = statement_of(claim)?;
-    let mut system = system.clone();
-    for equation in statement.relations() {
-        for difference in differences(&mut system, equation, &statement.conditions)? {
-            foreseen(&system.graph, difference)?;
-        }
-    }
     Ok(())
-}
-
-/// An equation, and what it is claimed under.
-fn said(printer: &mut Printer<'_>, equation: &Equation, conditions: &[Equation]) -> Result<String, Reason> {
-    if equation.relation != Relation::Equal {
-        return Err("an inequality".to_owned());
-    }
-    if equation.within.is_some() {
-        return Err("a number with a tolerance".to_owned());
-    }
-    let (left, right) = (printer.print(&equation.left)?, printer.print(&equation.right)?);
-    let sign = match (left.kind, right.kind) {
-        (Kind::Number, Kind::Number) => "==",
-        (Kind::Matrix(..), right) if left.kind == right => "===",
-        _ => return Err("sides of two shapes".to_owned()),
-    };
-    let list: Vec<String> =
-        conditions.iter().map(|condition| condition_of(printer, condition)).collect::<Result<_, _>>()?;
-    let under = if list.is_empty() { String::new() } else { format!("\n  where [{}]", list.join("; ")) };
-    Ok(format!("{}\n  {sign} {}{under}", left.text, right.text))
 }
 
 fn condition_of(printer: &mut Printer<'_>, condition: &Equation) -> Result<String, Reason> {
@@ -205,36 +347,45 @@ fn condition_of(printer: &mut Printer<'_>, condition: &Equation) -> Result<Strin
     Ok(format!("{} {sign} {}", left.text, right.text))
 }
 
-/// Left sides less right sides, entry by entry, with what conditions give put in.
-fn differences(
-    system: &mut System,
-    equation: &Equation,
-    conditions: &[Equation],
-) -> Result<Vec<NodeId>, Reason> {
-    let mut given = Assignment::new();
-    for condition in conditions.iter().rev().filter(|condition| condition.relation == Relation::Equal) {
-        let sides = [(&condition.left, &condition.right), (&condition.right, &condition.left)];
-        let symbol = |side: &Expr| match &side.kind {
-            ExprKind::Name(name) => system.find_symbol(name),
-            _ => None,
+/// Both sides, entry by entry, and the conditions.
+fn compared(system: &mut System, equation: &Equation, conditions: &[Equation]) -> Result<Compared, Reason> {
+    let mut guards = Vec::new();
+    let mut entries = |side: &Expr| {
+        let (value, needs) = system.elaborate_guarded(side).map_err(|problem| problem.message)?;
+        guards.extend(needs);
+        match value {
+            Value::Scalar(one) => Ok(vec![one]),
+            Value::Matrix(matrix) => Ok(matrix.entries),
+            other => Err(other.describe()),
+        }
+    };
+    let (left, right) = (entries(&equation.left)?, entries(&equation.right)?);
+    let mut given = Vec::new();
+    for condition in conditions {
+        let mut side = |side: &Expr| match entries(side)?.as_slice() {
+            [one] => Ok::<_, Reason>(*one),
+            _ => Err("a condition of matrices".to_owned()),
         };
-        // the first of two that can be given is, as in the library
-        let found = sides.into_iter().find_map(|(name, value)| Some((symbol(name)?, value)));
-        if let Some((symbol, value)) = found {
-            let value = system.scalar(value).map_err(|problem| problem.message)?;
+        given.push((side(&condition.left)?, condition.relation, side(&condition.right)?));
+    }
+    Ok(Compared { left, right, conditions: given, guards })
+}
+
+/// Left sides less right sides, with what conditions give put in, as often as the library does: of two variables the first is given.
+fn differences(system: &mut System, compared: &Compared) -> Vec<NodeId> {
+    let graph = &mut system.graph;
+    let mut given = Assignment::new();
+    for (left, relation, right) in compared.conditions.iter().rev() {
+        let sides = [(*left, *right), (*right, *left)];
+        let found = sides.into_iter().find_map(|(name, value)| Some((graph.as_symbol(name)?, value)));
+        if let Some((symbol, value)) = found.filter(|_| *relation == Relation::Equal) {
             given.insert(symbol, value);
         }
     }
-    let mut entries = |side: &Expr| match system.elaborate(side).map_err(|problem| problem.message)? {
-        Value::Scalar(one) => Ok(vec![one]),
-        Value::Matrix(matrix) => Ok(matrix.entries),
-        other => Err(other.describe()),
-    };
-    let (left, right) = (entries(&equation.left)?, entries(&equation.right)?);
-    let mut found: Vec<NodeId> =
-        left.into_iter().zip(right).map(|(left, right)| system.graph.sub(left, right)).collect();
+    let pairs = compared.left.iter().zip(&compared.right);
+    let mut found: Vec<NodeId> = pairs.map(|(left, right)| graph.sub(*left, *right)).collect();
     for _ in 0..given.len() {
-        found = system.graph.substitute(&found, &given);
+        found = graph.substitute(&found, &given);
     }
-    Ok(found)
+    found
 }

@@ -1,0 +1,278 @@
+//! A state in exact numbers at which two sides have values, or differ. It is sought here and shown there: Coq calculates both sides at it
+//! (`proofs/coq/Point.v`).
+
+use dashu::integer::IBig;
+use dashu::rational::RBig;
+use palmistry_lang::System;
+use palmistry_math::expression::syntax::Relation;
+use palmistry_math::expression::{Graph, Guard, Node, NodeId, Symbol};
+use palmistry_math::number::Function;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// So many states are tried.
+const TRIES: u64 = 60;
+/// Coq goes through a term as often as it is met: no more than so many parts.
+const LARGEST: u64 = 2_000_000;
+/// The values that are tried, in this order from a place that hangs on the symbol.
+const VALUES: [(i32, u32); 13] = [
+    (1, 1),
+    (2, 1),
+    (3, 1),
+    (1, 2),
+    (5, 1),
+    (3, 2),
+    (-1, 1),
+    (2, 3),
+    (-2, 1),
+    (7, 1),
+    (-1, 3),
+    (4, 1),
+    (-3, 2),
+];
+
+/// A number, or an angle by the tangent of its half.
+#[derive(Clone, PartialEq)]
+pub(crate) enum Coordinate {
+    Number(RBig),
+    Angle(RBig),
+}
+
+/// What is compared, entry by entry, and under what.
+pub(crate) struct Compared {
+    pub left: Vec<NodeId>,
+    pub right: Vec<NodeId>,
+    pub conditions: Vec<(NodeId, Relation, NodeId)>,
+    /// What has to hold for all of it to have values: the graph has left out what falls out of sums and products.
+    pub guards: Vec<Guard>,
+}
+
+/// A state, and the first entry that differs there.
+pub(crate) struct Found {
+    pub state: Vec<(Symbol, Coordinate)>,
+    pub differs: Option<usize>,
+}
+
+/// A state that meets the conditions and at which all entries have values; where one has to differ, such a state.
+/// `named` are the variables of what is printed.
+pub(crate) fn place(
+    system: &System,
+    compared: &Compared,
+    named: &BTreeSet<Symbol>,
+    has_to_differ: bool,
+) -> Option<Found> {
+    let graph = &system.graph;
+    let nodes: Vec<NodeId> = compared
+        .left
+        .iter()
+        .chain(&compared.right)
+        .copied()
+        .chain(compared.conditions.iter().flat_map(|(left, _, right)| [*left, *right]))
+        .chain(compared.guards.iter().map(|guard| guard.node))
+        .collect();
+    let mut sizes = HashMap::new();
+    if nodes.iter().fold(0u64, |sum, node| sum.saturating_add(size(graph, *node, &mut sizes))) > LARGEST {
+        return None;
+    }
+    let mut symbols = named.clone();
+    symbols.extend(graph.symbols_of(nodes.iter().copied()));
+    let mut angles = angles(graph, &nodes);
+    angles.extend(symbols.iter().copied().filter(|symbol| system.is_angle(*symbol)));
+    (0..TRIES).find_map(|attempt| {
+        let mut state: BTreeMap<Symbol, Coordinate> = BTreeMap::new();
+        for (symbol, number) in symbols.iter().zip(0u64..) {
+            // neighbours differ, and the first tries are all positive
+            let place = (number * (attempt + 1) + attempt * attempt / 3) % VALUES.len() as u64;
+            let (above, below) = VALUES[place as usize];
+            let above = if attempt % 2 == 0 { above.abs() } else { above };
+            let value = RBig::from_parts(IBig::from(above), below.into());
+            let is_angle = angles.contains(symbol);
+            state
+                .insert(*symbol, if is_angle { Coordinate::Angle(value) } else { Coordinate::Number(value) });
+        }
+        for _ in 0..compared.conditions.len() {
+            give(graph, &mut state, &compared.conditions);
+        }
+        let mut values = Values { graph, state: &state, known: HashMap::new() };
+        let is_met = compared.conditions.iter().all(|(left, relation, right)| {
+            let (Some(left), Some(right)) = (values.of(*left), values.of(*right)) else { return false };
+            match relation {
+                Relation::Equal => left == right,
+                Relation::NotEqual => left != right,
+                Relation::Less => left < right,
+                Relation::AtMost => left <= right,
+                Relation::Greater => left > right,
+                Relation::AtLeast => left >= right,
+            }
+        });
+        let exists = |guard: &Guard| values.of(guard.node).is_some_and(|value| guard.need.is_met_by(&value));
+        if !is_met || !compared.guards.iter().all(exists) {
+            return None;
+        }
+        let mut differs = None;
+        for (entry, (left, right)) in compared.left.iter().zip(&compared.right).enumerate() {
+            match (values.of(*left), values.of(*right)) {
+                (Some(left), Some(right)) if left != right => differs = differs.or(Some(entry)),
+                (Some(_), Some(_)) => (),
+                // one entry that differs is enough
+                _ if has_to_differ => (),
+                _ => return None,
+            }
+        }
+        let is_it = differs.is_some() || !has_to_differ;
+        is_it.then(|| Found { state: state.into_iter().collect(), differs })
+    })
+}
+
+/// Values that conditions give are put in; as the library has it, of two variables the first is given.
+fn give(graph: &Graph, state: &mut BTreeMap<Symbol, Coordinate>, conditions: &[(NodeId, Relation, NodeId)]) {
+    for (left, relation, right) in conditions {
+        if *relation != Relation::Equal {
+            continue;
+        }
+        let symbol = |node: NodeId| graph.as_symbol(node);
+        let pair = symbol(*left).map(|name| (name, *right)).or(symbol(*right).map(|name| (name, *left)));
+        let Some((name, value)) = pair else { continue };
+        let mut values = Values { graph, state, known: HashMap::new() };
+        let given = match state.get(&name) {
+            Some(Coordinate::Angle(_)) => values.circular(value).and_then(|(sine, cosine)| {
+                let below = RBig::ONE + cosine;
+                (!below.is_zero()).then(|| Coordinate::Angle(sine / below))
+            }),
+            _ => values.of(value).map(Coordinate::Number),
+        };
+        if let Some(given) = given {
+            state.insert(name, given);
+        }
+    }
+}
+
+/// How many parts a term has that is written out.
+fn size(graph: &Graph, node: NodeId, known: &mut HashMap<NodeId, u64>) -> u64 {
+    if let Some(size) = known.get(&node) {
+        return *size;
+    }
+    let parts = graph.node(node).operands();
+    let found = parts.fold(1u64, |sum, part| sum.saturating_add(size(graph, part, known)));
+    known.insert(node, found);
+    found
+}
+
+/// The symbols within sines and cosines.
+fn angles(graph: &Graph, nodes: &[NodeId]) -> BTreeSet<Symbol> {
+    let (mut open, mut met, mut found) = (nodes.to_vec(), BTreeSet::new(), BTreeSet::new());
+    while let Some(id) = open.pop() {
+        if !met.insert(id) {
+            continue;
+        }
+        let node = graph.node(id);
+        if let Node::Apply(Function::Sin | Function::Cos, of) = node {
+            found.extend(graph.symbols_of([of]));
+        }
+        open.extend(node.operands());
+    }
+    found
+}
+
+struct Values<'a> {
+    graph: &'a Graph,
+    state: &'a BTreeMap<Symbol, Coordinate>,
+    known: HashMap<NodeId, Option<RBig>>,
+}
+
+impl Values<'_> {
+    fn of(&mut self, id: NodeId) -> Option<RBig> {
+        if let Some(known) = self.known.get(&id) {
+            return known.clone();
+        }
+        let found = self.calculated(id);
+        self.known.insert(id, found.clone());
+        found
+    }
+
+    fn calculated(&mut self, id: NodeId) -> Option<RBig> {
+        match self.graph.node(id) {
+            Node::Constant(_) => self.graph.constant_value(id).cloned(),
+            Node::Symbol(symbol) => match self.state.get(&symbol)? {
+                Coordinate::Number(value) => Some(value.clone()),
+                Coordinate::Angle(_) => None,
+            },
+            Node::Add(a, b) => Some(self.of(a)? + self.of(b)?),
+            Node::Sub(a, b) => Some(self.of(a)? - self.of(b)?),
+            Node::Mul(a, b) => Some(self.of(a)? * self.of(b)?),
+            Node::Div(a, b) => {
+                let (above, below) = (self.of(a)?, self.of(b)?);
+                (!below.is_zero()).then(|| above / below)
+            }
+            Node::Neg(a) => Some(-self.of(a)?),
+            Node::Power(a, n) => {
+                let base = self.of(a)?;
+                let power = base.pow(n.unsigned_abs() as isize);
+                match n {
+                    0.. => Some(power),
+                    _ if power.is_zero() => None,
+                    _ => Some(RBig::ONE / power),
+                }
+            }
+            Node::Apply(Function::Sin, a) => self.circular(a).map(|(sine, _)| sine),
+            Node::Apply(Function::Cos, a) => self.circular(a).map(|(_, cosine)| cosine),
+            Node::Pi | Node::Apply(..) => None,
+        }
+    }
+
+    /// Sine and cosine, of what the library can calculate them of.
+    fn circular(&mut self, id: NodeId) -> Option<(RBig, RBig)> {
+        let turned = |(s, c): &(RBig, RBig), (t, k): &(RBig, RBig)| (s * k + c * t, c * k - s * t);
+        match self.graph.node(id) {
+            Node::Constant(_) => {
+                self.graph.constant_value(id).filter(|value| value.is_zero()).map(|_| (RBig::ZERO, RBig::ONE))
+            }
+            Node::Pi => Some((RBig::ZERO, -RBig::ONE)),
+            Node::Symbol(symbol) => match self.state.get(&symbol)? {
+                Coordinate::Angle(t) => {
+                    let below = RBig::ONE + t * t;
+                    Some((RBig::from(2) * t / &below, (RBig::ONE - t * t) / below))
+                }
+                Coordinate::Number(_) => None,
+            },
+            Node::Neg(a) => self.circular(a).map(|(sine, cosine)| (-sine, cosine)),
+            Node::Add(a, b) => Some(turned(&self.circular(a)?, &self.circular(b)?)),
+            Node::Sub(a, b) => {
+                let ((s, c), (t, k)) = (self.circular(a)?, self.circular(b)?);
+                Some(turned(&(s, c), &(-t, k)))
+            }
+            Node::Div(a, b) | Node::Mul(a, b) => self.multiple(id, a, b),
+            _ => None,
+        }
+    }
+
+    /// Of a quarter turn, and of small multiples.
+    fn multiple(&mut self, id: NodeId, a: NodeId, b: NodeId) -> Option<(RBig, RBig)> {
+        let number = |node: NodeId| self.graph.constant_value(node).cloned();
+        let divides = matches!(self.graph.node(id), Node::Div(..));
+        let (factor, angle) = match (number(a), number(b)) {
+            (_, Some(value)) if divides => (RBig::ONE / value, a),
+            (Some(value), _) if !divides => (value, b),
+            (_, Some(value)) => (value, a),
+            _ => return None,
+        };
+        let (angle, factor) = match self.graph.node(angle) {
+            // quarter turns
+            Node::Pi => (None, factor * RBig::from(2)),
+            _ => (Some(angle), factor),
+        };
+        let count =
+            factor.denominator().is_one().then(|| i32::try_from(factor.numerator().clone()).ok())??;
+        let one = match angle {
+            None => (RBig::ONE, RBig::ZERO),
+            Some(angle) if count.abs() <= 12 => self.circular(angle)?,
+            Some(_) => return None,
+        };
+        let mut found = (RBig::ZERO, RBig::ONE);
+        let times = if angle.is_none() { count.rem_euclid(4) } else { count.abs() };
+        for _ in 0..times {
+            found = (&one.0 * &found.1 + &one.1 * &found.0, &one.1 * &found.1 - &one.0 * &found.0);
+        }
+        let back = angle.is_some() && count < 0;
+        Some(if back { (-found.0, found.1) } else { found })
+    }
+}
