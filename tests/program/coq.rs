@@ -82,8 +82,14 @@ claim 2.laws: exp(by)*exp(omega)*log(exp(k)) = k*exp(by + omega)
     );
     assert!(text.contains("Theorem claim_1_energy : L f energy\n  == 0.\nProof. identity. Qed."), "{text}");
     assert!(text.contains("\n  where [k = 0]."), "{text}");
-    assert!(text.contains("Theorem claim_1_where_somewhere : is_about_something ([k = 0])%condition"), "{text}");
-    assert!(text.contains("Theorem claim_2_wrong_refuted : refuted []\n  (L f phi)\n  (2 * omega)."), "{text}");
+    assert!(
+        text.contains("Theorem claim_1_where_somewhere : is_about_something ([k = 0])%condition"),
+        "{text}"
+    );
+    assert!(
+        text.contains("Theorem claim_2_wrong_refuted : refuted []\n  (L f phi)\n  (2 * omega)."),
+        "{text}"
+    );
     assert!(text.contains("by_ * match_"), "{text}");
     assert!(!text.contains("unused"), "{text}");
     assert_eq!(text.matches("(*").count(), text.matches("*)").count(), "{text}");

@@ -13,6 +13,8 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 const TRIES: u64 = 60;
 /// Coq goes through a term as often as it is met: no more than so many parts.
 const LARGEST: u64 = 2_000_000;
+/// Nor into terms that are nested more deeply.
+pub(crate) const DEEPEST: u64 = 1000;
 /// The values that are tried, in this order from a place that hangs on the symbol.
 const VALUES: [(i32, u32); 13] = [
     (1, 1),
@@ -69,8 +71,8 @@ pub(crate) fn place(
         .chain(compared.conditions.iter().flat_map(|(left, _, right)| [*left, *right]))
         .chain(compared.guards.iter().map(|guard| guard.node))
         .collect();
-    let mut sizes = HashMap::new();
-    if nodes.iter().fold(0u64, |sum, node| sum.saturating_add(size(graph, *node, &mut sizes))) > LARGEST {
+    let Extent { parts, depth } = extent(graph, &nodes);
+    if parts > LARGEST || depth > DEEPEST {
         return None;
     }
     let mut symbols = named.clone();
@@ -146,15 +148,33 @@ fn give(graph: &Graph, state: &mut BTreeMap<Symbol, Coordinate>, conditions: &[(
     }
 }
 
-/// How many parts a term has that is written out.
-fn size(graph: &Graph, node: NodeId, known: &mut HashMap<NodeId, u64>) -> u64 {
-    if let Some(size) = known.get(&node) {
-        return *size;
+/// How much there is of some terms that are written out.
+pub(crate) struct Extent {
+    pub parts: u64,
+    pub depth: u64,
+}
+
+/// How much there is of some terms that are written out, without going down into them.
+pub(crate) fn extent(graph: &Graph, nodes: &[NodeId]) -> Extent {
+    let (mut open, mut met) = (nodes.to_vec(), BTreeSet::new());
+    while let Some(id) = open.pop() {
+        if met.insert(id) {
+            open.extend(graph.node(id).operands());
+        }
     }
-    let parts = graph.node(node).operands();
-    let found = parts.fold(1u64, |sum, part| sum.saturating_add(size(graph, part, known)));
-    known.insert(node, found);
-    found
+    // a node comes after those that it needs
+    let mut known: HashMap<NodeId, (u64, u64)> = HashMap::new();
+    for id in met {
+        let of = graph.node(id).operands().filter_map(|part| known.get(&part));
+        let found = of.fold((1u64, 1), |(parts, depth), (more, below)| {
+            (parts.saturating_add(*more), depth.max(below + 1))
+        });
+        known.insert(id, found);
+    }
+    let all = nodes.iter().filter_map(|node| known.get(node));
+    let (parts, depth) =
+        all.fold((0u64, 0), |(parts, depth), (more, below)| (parts.saturating_add(*more), depth.max(*below)));
+    Extent { parts, depth }
 }
 
 /// The symbols within sines and cosines.

@@ -37,6 +37,9 @@ pub(crate) struct Printed {
     hold: Hold,
 }
 
+/// No longer term is one that a person reads.
+const LONGEST: usize = 100_000;
+
 /// Why something cannot be written.
 pub(crate) type Reason = String;
 type Found = Result<Printed, Reason>;
@@ -109,6 +112,12 @@ impl Printer<'_> {
 
     /// A term for an expression.
     pub fn print(&mut self, expr: &Expr) -> Found {
+        let found = self.printed(expr)?;
+        refuse_length(Some(&found))?;
+        Ok(found)
+    }
+
+    fn printed(&mut self, expr: &Expr) -> Found {
         match &expr.kind {
             ExprKind::Number(value) => Ok(number(value)),
             ExprKind::Name(name) => self.named(name),
@@ -291,6 +300,7 @@ impl Printer<'_> {
         let mut total: Option<Printed> = None;
         for (negative, term) in terms {
             let term = self.print(term)?;
+            refuse_length(total.as_ref())?;
             total = Some(match (total, term.kind) {
                 (None, Kind::Number) if *negative => {
                     Printed::number(format!("- {}", term.at_least(Hold::Power)), Hold::Negative)
@@ -299,10 +309,10 @@ impl Printer<'_> {
                     Printed::matrix(format!("each Opp {}", term.argument()), rows, columns, Hold::Call)
                 }
                 (None, _) => term,
-                (Some(sum), Kind::Number) if sum.kind == Kind::Number => {
-                    let sign = if *negative { '-' } else { '+' };
-                    let text = format!("{} {sign} {}", sum.at_least(Hold::Sum), term.at_least(Hold::Product));
-                    Printed::number(text, Hold::Sum)
+                (Some(mut sum), Kind::Number) if sum.kind == Kind::Number => {
+                    sum.text.push_str(if *negative { " - " } else { " + " });
+                    sum.text.push_str(&term.at_least(Hold::Product));
+                    Printed { hold: Hold::Sum, ..sum }
                 }
                 (Some(sum), Kind::Matrix(rows, columns)) if sum.kind == term.kind => {
                     let operation = if *negative { "minus" } else { "plus" };
@@ -319,6 +329,7 @@ impl Printer<'_> {
         let mut total: Option<Printed> = None;
         for (divides, factor) in factors {
             let factor = self.print(factor)?;
+            refuse_length(total.as_ref())?;
             let Some(so_far) = total else {
                 total = Some(match divides {
                     false => factor,
@@ -326,11 +337,12 @@ impl Printer<'_> {
                 });
                 continue;
             };
-            let sign = if *divides { '/' } else { '*' };
             total = Some(match (so_far.kind, factor.kind) {
                 (Kind::Number, Kind::Number) => {
-                    let text =
-                        format!("{} {sign} {}", so_far.at_least(Hold::Product), factor.at_least(Hold::Power));
+                    let mut text =
+                        if so_far.hold < Hold::Product { format!("({})", so_far.text) } else { so_far.text };
+                    text.push_str(if *divides { " / " } else { " * " });
+                    text.push_str(&factor.at_least(Hold::Power));
                     Printed::number(text, Hold::Product)
                 }
                 (Kind::Matrix(rows, columns), Kind::Number) => {
@@ -418,6 +430,13 @@ impl Printer<'_> {
             });
         }
         whole.ok_or_else(|| "an empty matrix".to_owned())
+    }
+}
+
+fn refuse_length(found: Option<&Printed>) -> Result<(), Reason> {
+    match found.is_some_and(|found| found.text.len() > LONGEST) {
+        true => Err(format!("it is longer than {LONGEST} characters")),
+        false => Ok(()),
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::definitions::Definitions;
 use crate::foreseen::foreseen;
 use crate::names::{Names, in_comment};
-use crate::place::{Compared, Coordinate, Found, place};
+use crate::place::{Compared, Coordinate, DEEPEST, Found, extent, place};
 use crate::printer::{Kind, Printed, Printer, Reason};
 use dashu::rational::RBig;
 use palmistry_lang::{
@@ -11,7 +11,7 @@ use palmistry_lang::{
 };
 use palmistry_math::expression::syntax::{Equation, Expr, ExprKind, Relation};
 use palmistry_math::expression::{NodeId, Symbol};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 /// The theorems of a file.
@@ -58,8 +58,21 @@ fn written(system: &System, wanted: &dyn Fn(&str) -> Result<(), String>, to_be_p
     let mut found =
         Exported { text: String::new(), claims: Vec::new(), refuted: Vec::new(), left_out: Vec::new() };
     let mut theorems = Vec::new();
+    // one copy for all claims: terms are written into its graph
+    let mut scratch = system.clone();
+    let symbols = system
+        .symbols()
+        .map(|(symbol, _)| (names.of("value", system.symbol_name(symbol)), symbol))
+        .collect::<BTreeMap<String, Symbol>>();
     for claim in &system.claims {
-        let mut of = OfClaim { system, claim, definitions: &definitions, names: &mut names };
+        let mut of = OfClaim {
+            system,
+            claim,
+            definitions: &definitions,
+            names: &mut names,
+            scratch: &mut scratch,
+            symbols: &symbols,
+        };
         let (right, wrong) = statements_of(claim);
         if let Some(statement) = right {
             let proved = wanted(&claim.id).and_then(|()| of.identities(statement, to_be_proved));
@@ -147,6 +160,10 @@ struct OfClaim<'a> {
     claim: &'a ClaimSyntax,
     definitions: &'a Definitions,
     names: &'a mut Names,
+    /// A copy of the system.
+    scratch: &'a mut System,
+    /// The variables of Coq.
+    symbols: &'a BTreeMap<String, Symbol>,
 }
 
 /// Both sides of an equation, and what it is claimed under.
@@ -185,12 +202,13 @@ impl OfClaim<'_> {
             if !to_be_proved {
                 continue;
             }
-            let mut system = self.system.clone();
-            let compared = compared(&mut system, equation, &statement.conditions)?;
-            for difference in differences(&mut system, &compared) {
-                foreseen(&system.graph, difference)?;
+            let compared = compared(self.scratch, equation, &statement.conditions)?;
+            let differences = differences(self.scratch, &compared);
+            refuse_depth(self.scratch, &differences)?;
+            for difference in differences {
+                foreseen(&self.scratch.graph, difference)?;
             }
-            if let Some(place) = place(&system, &compared, &self.variables(&uses), false) {
+            if let Some(place) = place(self.scratch, &compared, &self.variables(&uses), false) {
                 let ident = self.names.of("claim", &format!("{name} somewhere"));
                 let word = match said.left.kind {
                     Kind::Number => "is_about_something",
@@ -216,9 +234,8 @@ impl OfClaim<'_> {
             return Err("several equations in one".to_owned());
         }
         let (said, uses) = self.said(&statement.equation, &statement.conditions)?;
-        let mut system = self.system.clone();
-        let compared = compared(&mut system, &statement.equation, &statement.conditions)?;
-        let found = place(&system, &compared, &self.variables(&uses), true);
+        let compared = compared(self.scratch, &statement.equation, &statement.conditions)?;
+        let found = place(self.scratch, &compared, &self.variables(&uses), true);
         let Some((found, entry)) = found.and_then(|found| found.differs.map(|entry| (found, entry))) else {
             return Err("it is refuted, and no state in rational numbers was found".to_owned());
         };
@@ -241,12 +258,9 @@ impl OfClaim<'_> {
     }
 
     /// The variables that these names rest on.
-    fn variables(&mut self, uses: &BTreeSet<String>) -> BTreeSet<Symbol> {
+    fn variables(&self, uses: &BTreeSet<String>) -> BTreeSet<Symbol> {
         let (_, variables) = self.definitions.needed(uses);
-        let symbols: Vec<Symbol> = self.system.symbols().map(|(symbol, _)| symbol).collect();
-        let is_named =
-            |symbol: &Symbol| variables.contains(&self.names.of("value", self.system.symbol_name(*symbol)));
-        symbols.into_iter().filter(is_named).collect()
+        variables.iter().filter_map(|ident| self.symbols.get(ident).copied()).collect()
     }
 
     fn comment(&self, statement: &Statement) -> String {
@@ -311,6 +325,14 @@ fn uses_with(mut uses: BTreeSet<String>, found: &Found, of: &mut OfClaim<'_>) ->
         uses.insert(of.names.of("value", of.system.symbol_name(*symbol)));
     }
     uses
+}
+
+/// Coq goes down into terms, and so does what foresees it.
+fn refuse_depth(system: &System, nodes: &[NodeId]) -> Result<(), Reason> {
+    match extent(&system.graph, nodes).depth > DEEPEST {
+        true => Err(format!("it is nested more than {DEEPEST} deep")),
+        false => Ok(()),
+    }
 }
 
 /// What no equation of the library says.
