@@ -2,6 +2,7 @@
 //! fractions of polynomials is gone here modulo a prime, and its work is counted. This decides nothing. It keeps theorems out of a file
 //! that would not be proved there, so that the rest of the file is.
 
+use crate::place::extent;
 use crate::printer::Reason;
 use dashu::integer::IBig;
 use dashu::rational::RBig;
@@ -14,6 +15,8 @@ use std::rc::Rc;
 const PRIME: u64 = (1 << 61) - 1;
 /// So many products of monomials are up to twenty seconds of Coq.
 const MOST_WORK: u64 = 3_000_000;
+/// Nor of terms with more parts, written out: each of them is looked at.
+const LARGEST: u64 = 10_000_000;
 /// No greater multiple of an angle is expanded by the library.
 const MOST_TURNS: i64 = 12;
 
@@ -53,11 +56,12 @@ struct Ways<'g> {
     work: u64,
 }
 
-/// Whether the library shows that an expression is zero.
-pub(crate) fn foreseen(graph: &Graph, difference: NodeId) -> Result<(), Reason> {
+/// Whether the library shows that two expressions are equal. The graph knows both already, and may know that they are one: the library
+/// goes through each.
+pub(crate) fn foreseen(graph: &Graph, left: NodeId, right: NodeId) -> Result<(), Reason> {
     let (atoms, squares, factors, known) = Default::default();
     let mut ways = Ways { graph, atoms, squares, factors, known, work: 0 };
-    match ways.fraction(difference, false) {
+    match ways.difference(left, right) {
         Ok(found) if found.top.is_empty() => Ok(()),
         Ok(_) => Err("it rests on laws of functions that the library does not have".to_owned()),
         Err(TooMuch) => Err("its polynomials are too large for the library".to_owned()),
@@ -105,6 +109,17 @@ fn joined(a: &Monomial, b: &Monomial) -> Monomial {
 }
 
 impl Ways<'_> {
+    fn difference(&mut self, left: NodeId, right: NodeId) -> Result<Fraction, TooMuch> {
+        if extent(self.graph, &[left, right]).parts > LARGEST {
+            return Err(TooMuch);
+        }
+        let (left, right) = (self.fraction(left, false)?, self.fraction(right, false)?);
+        let right =
+            Fraction { top: negated(right.top.clone()), bottom: right.bottom.clone(), work: right.work };
+        let found = self.add(&left, &right)?;
+        if found.work > MOST_WORK { Err(TooMuch) } else { Ok(found) }
+    }
+
     fn spend(&mut self, work: usize) -> Result<(), TooMuch> {
         self.work += work as u64;
         if self.work > MOST_WORK { Err(TooMuch) } else { Ok(()) }

@@ -203,10 +203,9 @@ impl OfClaim<'_> {
                 continue;
             }
             let compared = compared(self.scratch, equation, &statement.conditions)?;
-            let differences = differences(self.scratch, &compared);
-            refuse_depth(self.scratch, &differences)?;
-            for difference in differences {
-                foreseen(&self.scratch.graph, difference)?;
+            for (left, right) in with_given(self.scratch, &compared) {
+                refuse_depth(self.scratch, &[left, right])?;
+                foreseen(&self.scratch.graph, left, right)?;
             }
             if let Some(place) = place(self.scratch, &compared, &self.variables(&uses), false) {
                 let ident = self.names.of("claim", &format!("{name} somewhere"));
@@ -393,8 +392,8 @@ fn compared(system: &mut System, equation: &Equation, conditions: &[Equation]) -
     Ok(Compared { left, right, conditions: given, guards })
 }
 
-/// Left sides less right sides, with what conditions give put in, as often as the library does: of two variables the first is given.
-fn differences(system: &mut System, compared: &Compared) -> Vec<NodeId> {
+/// Left and right sides with what conditions give put in, as often as the library does: of two variables the first is given.
+fn with_given(system: &mut System, compared: &Compared) -> Vec<(NodeId, NodeId)> {
     let graph = &mut system.graph;
     let mut given = Assignment::new();
     for (left, relation, right) in compared.conditions.iter().rev() {
@@ -404,10 +403,10 @@ fn differences(system: &mut System, compared: &Compared) -> Vec<NodeId> {
             given.insert(symbol, value);
         }
     }
-    let pairs = compared.left.iter().zip(&compared.right);
-    let mut found: Vec<NodeId> = pairs.map(|(left, right)| graph.sub(*left, *right)).collect();
+    let (mut left, mut right) = (compared.left.clone(), compared.right.clone());
     for _ in 0..given.len() {
-        found = graph.substitute(&found, &given);
+        left = graph.substitute(&left, &given);
+        right = graph.substitute(&right, &given);
     }
-    found
+    left.into_iter().zip(right).collect()
 }
