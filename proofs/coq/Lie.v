@@ -137,14 +137,17 @@ Definition cross3 (m n : matrix) : matrix :=
   | _, _ => []
   end.
 
-(** Laplace's expansion along the first row. *)
+(** Laplace's expansion along the first row; minors beside zeros are not looked at. *)
 Definition without {A} (n : nat) (l : list A) := firstn n l ++ skipn (S n) l.
 Fixpoint minor_det (size : nat) (m : matrix) : term :=
   match size, m with
   | S n, row :: rest =>
       fold_right (fun i sum =>
-        let product := mul (nth i row (Cst 0)) (minor_det n (map (without i) rest)) in
-        if Nat.even i then add product sum else sub sum product) (Cst 0) (seq 0 (S n))
+        match nth i row (Cst 0) with
+        | Cst 0 => sum
+        | e => let product := mul e (minor_det n (map (without i) rest)) in
+               if Nat.even i then add product sum else sub sum product
+        end) (Cst 0) (seq 0 (S n))
   | _, _ => Cst 1
   end.
 Definition det (m : matrix) := minor_det (length m) m.

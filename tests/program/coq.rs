@@ -106,6 +106,39 @@ claim 2.laws: exp(by)*exp(omega)*log(exp(k)) = k*exp(by + omega)
     }
 }
 
+/// A stranger's file: what doubles, what is long, what is imported a hundred million ways. Nothing of it is worth waiting for, and the rest is written.
+#[test]
+fn what_would_keep_coq_or_the_writer_for_ever_is_left_out() {
+    let folder = folder();
+    let mut text = "system \"large\"\nuse b0 = \"b0.proof\"\nstate x\nparam k\ndrift f  x' = k*x\noutput x\nlet a0 = x + k\n".to_owned();
+    for i in 0..60 {
+        text.push_str(&format!("let a{} = a{i}*a{i} + a{i}\n", i + 1));
+    }
+    text.push_str("claim doubling: a60 = a59^2 + a59\n");
+    text.push_str("claim power expect refuted: ((x^1000)^1000)^1000 = 2*x\n");
+    text.push_str(&format!("claim long: {} = 20000*k*x\n", vec!["k*x"; 20_000].join(" + ")));
+    let row = |i: usize| (0..12).map(|j| if i == j { "x" } else { "0" }).collect::<Vec<_>>().join(", ");
+    let rows: Vec<String> = (0..12).map(row).collect();
+    text.push_str(&format!("claim sparse: det([{}]) = x^12\n", rows.join("; ")));
+    text.push_str("claim small: L(f, x) = k*x\n");
+    let file = write(&folder, "large.proof", text);
+    for i in 0..7 {
+        let uses: String = (0..10).map(|j| format!("use c{j} = \"b{}.proof\"\n", i + 1)).collect();
+        write(&folder, &format!("b{i}.proof"), format!("system \"b{i}\"\n{uses}state x\n"));
+    }
+    write(&folder, "b7.proof", "system \"b7\"\nstate x\n");
+    let out = folder.path().join("theorems");
+    let run = palmistry(&["prove", &file.to_string_lossy(), "--coq", &out.to_string_lossy(), "--json"]);
+    let theorems = json(&run)["theorems"]["files"][0].clone();
+    assert_eq!(theorems["theorems"], serde_json::json!(["sparse", "small"]), "{theorems}");
+    assert_eq!(theorems["left_out"].as_array().map(Vec::len), Some(3), "{theorems}");
+    if is_there() {
+        for file in ["Lie.v", "Check.v", "Point.v", "large.v"] {
+            compile(&out, file);
+        }
+    }
+}
+
 /// The names that Coq prints behind `Print Assumptions`.
 fn assumptions(told: &str) -> BTreeSet<&str> {
     let names = told.lines().filter(|line| !line.starts_with(' ') && *line != "Axioms:");

@@ -5,7 +5,9 @@ use crate::printer::{Kind, Known, Printer, Reason, kind_of};
 use dashu::rational::RBig;
 use palmistry_lang::{Entry, Field, System, Time, entries_of};
 use palmistry_math::expression::syntax::{Expr, Name};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 /// What is printed for a name: a definition of Coq, and the names that it mentions.
 pub(crate) struct Defined {
@@ -23,14 +25,23 @@ pub(crate) struct Definitions {
     pub values: BTreeMap<String, Result<Known, Reason>>,
     /// Fields, likewise.
     pub fields: BTreeMap<String, Result<String, Reason>>,
+    files: HashMap<PathBuf, Option<Rc<System>>>,
+    /// How many imports were followed.
+    imports: usize,
 }
+
+/// Files that import each other ten times over have as many imports as there are ways through them.
+const MOST_IMPORTS: usize = 1000;
 
 impl Definitions {
     /// Those of a file, under a prefix.
     pub fn add(&mut self, system: &System, prefix: &str, names: &mut Names) {
         for (alias, path) in system.imports() {
-            // what cannot be read any more is not known, and what names it is left out
-            if let Ok(other) = System::read(path) {
+            // what cannot be read any more, or comes after too many others, is not known, and what names it is left out
+            if self.imports < MOST_IMPORTS
+                && let Some(other) = self.read(path)
+            {
+                self.imports += 1;
                 self.add(&other, &format!("{prefix}{alias}."), names);
             }
         }
@@ -49,6 +60,12 @@ impl Definitions {
                 }
             }
         }
+    }
+
+    /// A file, which is read once however often it is imported.
+    fn read(&mut self, path: &Path) -> Option<Rc<System>> {
+        let known = self.files.entry(path.to_owned());
+        known.or_insert_with(|| System::read(path).ok().map(Rc::new)).clone()
     }
 
     fn printer<'a>(&'a self, system: &'a System, prefix: &str, names: &'a mut Names) -> Printer<'a> {

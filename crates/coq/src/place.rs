@@ -1,6 +1,7 @@
 //! A state in exact numbers at which two sides have values, or differ. It is sought here and shown there: Coq calculates both sides at it
 //! (`proofs/coq/Point.v`).
 
+use dashu::base::BitTest;
 use dashu::integer::IBig;
 use dashu::rational::RBig;
 use palmistry_lang::System;
@@ -15,6 +16,8 @@ const TRIES: u64 = 60;
 const LARGEST: u64 = 2_000_000;
 /// Nor into terms that are nested more deeply.
 pub(crate) const DEEPEST: u64 = 1000;
+/// No longer number is a value: powers of powers have few parts.
+const MOST_BITS: usize = 100_000;
 /// The values that are tried, in this order from a place that hangs on the symbol.
 const VALUES: [(i32, u32); 13] = [
     (1, 1),
@@ -193,6 +196,11 @@ fn angles(graph: &Graph, nodes: &[NodeId]) -> BTreeSet<Symbol> {
     found
 }
 
+/// How long a number is.
+fn bits(value: &RBig) -> usize {
+    value.numerator().bit_len() + value.denominator().bit_len()
+}
+
 struct Values<'a> {
     graph: &'a Graph,
     state: &'a BTreeMap<Symbol, Coordinate>,
@@ -204,7 +212,7 @@ impl Values<'_> {
         if let Some(known) = self.known.get(&id) {
             return known.clone();
         }
-        let found = self.calculated(id);
+        let found = self.calculated(id).filter(|value| bits(value) <= MOST_BITS);
         self.known.insert(id, found.clone());
         found
     }
@@ -226,6 +234,9 @@ impl Values<'_> {
             Node::Neg(a) => Some(-self.of(a)?),
             Node::Power(a, n) => {
                 let base = self.of(a)?;
+                if bits(&base).saturating_mul(n.unsigned_abs() as usize) > 2 * MOST_BITS {
+                    return None;
+                }
                 let power = base.pow(n.unsigned_abs() as isize);
                 match n {
                     0.. => Some(power),

@@ -477,6 +477,7 @@ fn number(value: &RBig) -> Printed {
     }
 }
 
+/// The language has no exponent beyond a thousand: in Coq it is a natural number, which is as long as it is great.
 fn power(base: &Printed, exponent: i32) -> Printed {
     let text = format!("{} ^ {}", base.at_least(Hold::Call), exponent.unsigned_abs());
     match exponent {
