@@ -70,7 +70,7 @@ pub struct ModelFlow<'a> {
 }
 
 /// The equations are evaluated no more often than this between two samples (one step takes thirteen times): who needs
-/// more has met a pole.
+/// more has met a pole, or has samples that are too far apart.
 const MOST_EVALUATIONS: usize = 3000;
 
 /// A step that is not refined errs by this part of what is tolerated, so that a thousand of them err by no more than one that is.
@@ -251,7 +251,7 @@ pub(crate) type RightHandSide<'f> = dyn Fn(f64, &[f64], &mut [f64]) + 'f;
 /// time it hands over are integrated wrongly. A coordinate whose rate is one brings the right time.
 struct Equations<'f> {
     f: &'f RightHandSide<'f>,
-    evaluations: Cell<usize>,
+    evaluations: &'f Cell<usize>,
 }
 
 impl System<f64, DVector<f64>> for Equations<'_> {
@@ -270,7 +270,7 @@ impl System<f64, DVector<f64>> for Equations<'_> {
 /// Integrates `y' = f(t, y)` from one time to a later one.
 ///
 /// # Errors
-/// Where no step is small enough, as near a pole.
+/// Where no step is small enough, as near a pole; where more evaluations are needed than are made between two samples.
 pub fn advance(
     f: &RightHandSide<'_>,
     from: f64,
@@ -279,13 +279,20 @@ pub fn advance(
     tolerance: f64,
 ) -> Result<Vec<f64>, Lost> {
     let start = DVector::from_iterator(y.len() + 1, y.iter().copied().chain([from]));
-    let equations = Equations { f, evaluations: Cell::new(0) };
+    let evaluations = Cell::new(0);
+    let equations = Equations { f, evaluations: &evaluations };
     let mut solver = Dop853::new(equations, 0.0, to - from, to - from, start, tolerance, tolerance);
     solver.set_output(OutputType::Sparse);
     let lost = |after: f64, why: &str| Lost { time: from + after, why: why.to_owned() };
     solver.integrate().map_err(|error| match error {
-        IntegrationError::StepSizeUnderflow { x } => lost(x, "no step is small enough, as near a pole"),
-        IntegrationError::MaxNumStepReached { x, .. } => lost(x, "there are too many steps, as near a pole"),
+        // the steps shrink since nothing is evaluated any more: of the equations this says nothing
+        IntegrationError::StepSizeUnderflow { x } | IntegrationError::MaxNumStepReached { x, .. }
+            if evaluations.get() > MOST_EVALUATIONS =>
+        {
+            lost(x, &format!("the equations were evaluated {MOST_EVALUATIONS} times since the sample before, and no more is done: the next sample is too far away, or a pole is near"))
+        }
+        IntegrationError::StepSizeUnderflow { x } => lost(x, "no step is small enough, as near a pole or a jump"),
+        IntegrationError::MaxNumStepReached { x, .. } => lost(x, "there are too many steps"),
         IntegrationError::StiffnessDetected { x } => lost(x, "the equations become stiff"),
     })?;
     let end = solver.y_out().last().filter(|end| end.iter().all(|value| value.is_finite()));

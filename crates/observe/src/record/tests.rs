@@ -1,4 +1,6 @@
 mod files;
+#[cfg(feature = "parquet")]
+mod parquet_files;
 
 use super::*;
 use std::path::PathBuf;
@@ -180,7 +182,9 @@ fn files_that_are_no_records_are_refused_in_words() {
         ("a.csv", "time;s1\n0;1\n", "has no column 'time'"),
         ("a.csv", "time,s1,s1\n0,1,1\n", "'s1' is there twice"),
         ("a.csv", "time,,s1\n0,1,1\n", "column 2 has no name"),
+        #[cfg(feature = "parquet")]
         ("a.parquet", "", "cannot read"),
+        #[cfg(feature = "parquet")]
         ("a.parquet", "time,s1\n0,1\n", "cannot read"),
         ("a.txt", "time,s1\n0,1\n", "neither a .csv nor a .parquet file"),
     ] {

@@ -169,7 +169,7 @@ const MOST_EVALUATIONS: usize = 4000;
 /// Time is the last coordinate: Dop853 of ode_solvers 0.6.2 takes zero for the twelfth node of the method, which is one.
 struct Law<'a> {
     readings: &'a SlowReadings,
-    evaluations: Cell<usize>,
+    evaluations: &'a Cell<usize>,
 }
 
 impl System<f64, SVector<f64, 4>> for Law<'_> {
@@ -189,7 +189,8 @@ impl System<f64, SVector<f64, 4>> for Law<'_> {
 fn adaptive(readings: &SlowReadings, start: State, method: ThesisMethod) -> (Vec<State>, Option<String>) {
     let mut states = vec![start];
     for ends in readings.times.windows(2) {
-        let (law, span) = (Law { readings, evaluations: Cell::new(0) }, ends[1] - ends[0]);
+        let evaluations = Cell::new(0);
+        let (law, span) = (Law { readings, evaluations: &evaluations }, ends[1] - ends[0]);
         let [r1, r2, phi0] = states[states.len() - 1];
         let y = SVector::from([r1, r2, phi0, ends[0]]);
         // the four numbers before the step sizes are the solvers' usual safety factor, damping, and bounds on a change of step
@@ -241,6 +242,13 @@ fn adaptive(readings: &SlowReadings, start: State, method: ThesisMethod) -> (Vec
         match found {
             Ok(Some(y)) if y.iter().all(|x| x.is_finite()) => states.push([y[0], y[1], y[2]]),
             Ok(_) => return (states, Some("a number is not finite".to_owned())),
+            // the integrator calls this a step that is too small
+            Err(_) if evaluations.get() > MOST_EVALUATIONS => {
+                let why = format!(
+                    "the equations were evaluated {MOST_EVALUATIONS} times since the sample before, and no more is done"
+                );
+                return (states, Some(why));
+            }
             Err(error) => return (states, Some(error.to_string())),
         }
     }
