@@ -82,13 +82,45 @@ pub const MOST_UNKNOWNS: usize = 32;
 /// The unknowns whose second derivatives one call can carry: they are many.
 pub const MOST_BENT: usize = 10;
 
+/// What the samples of one window may take, in bytes: an estimate needs up to four times as much.
+const MOST_BYTES: usize = 512 << 20;
+
+/// What a sample takes beside its numbers, in bytes: five tables and their places in memory.
+const AROUND: usize = 300;
+
 impl ModelFlow<'_> {
+    /// That so many samples with the derivatives by `p` unknowns can be kept at once.
+    ///
+    /// # Errors
+    /// They would take too much memory; what to do about it.
+    pub fn affordable(&self, samples: &[f64], p: usize, order: Order) -> Result<(), Lost> {
+        let (states, outputs) = (self.model.states.len(), self.model.outputs.len());
+        let numbers = match order {
+            Order::Value => states + outputs,
+            Order::First => (states + outputs) * (1 + p),
+            Order::Second => states * (1 + p) + outputs * (1 + p + p * p),
+        };
+        let bytes = samples.len().saturating_mul(8 * numbers + AROUND);
+        if bytes <= MOST_BYTES {
+            return Ok(());
+        }
+        let count = samples.len();
+        Err(Lost {
+            time: samples.first().copied().unwrap_or(0.0),
+            why: format!(
+                "{count} samples with derivatives by {p} unknowns would take {} MiB, more than {}: take a smaller window, or a filter",
+                bytes >> 20,
+                MOST_BYTES >> 20
+            ),
+        })
+    }
+
     /// The model at some times, from a state at the first of them; `free` are the places of the states whose first values
     /// are unknown, in the order of the derivatives.
     ///
     /// # Errors
     /// Where the equations have no value, the integrator finds no step, or more than [`MOST_UNKNOWNS`] are unknown, or
-    /// [`MOST_BENT`] at order two.
+    /// [`MOST_BENT`] at order two; where the samples would take too much memory.
     pub fn follow(
         &self,
         start: &[f64],
@@ -97,6 +129,7 @@ impl ModelFlow<'_> {
         order: Order,
     ) -> Result<Vec<Sample>, Lost> {
         let p = free.len();
+        self.affordable(times, p, order)?;
         // few sizes for all, since each is compiled: what is too large is filled with zeros
         macro_rules! sized {
             ($($size:literal)*; $($bent:literal)*) => {

@@ -7,7 +7,7 @@ use super::spread::Spread;
 use super::task::{Observer, Task};
 use super::track::Track;
 use super::{Learned, Lost, Model};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, RowDVector};
 use palmistry_math::expression::{NodeId, Symbol, gradient};
 use palmistry_math::number::{Duals, Refusal};
 use serde::Deserialize;
@@ -20,7 +20,8 @@ use std::collections::HashMap;
 /// 6.1, 6.2: each derivative is the next coordinate. There a copy of the system is corrected by
 /// `-K e`, `e` being the error of an output and `K` the coefficients of `(1 + 1/gain)^l` (the solution of the paper's matrix
 /// equation); in the coordinates of the model the correction is `-(dPhi/dx)^-1 K e`. The form exists where `dPhi/dx` is regular.
-/// How many derivatives each output contributes is chosen at the first guess, as the choice that is conditioned best.
+/// How many derivatives each output contributes is chosen at the first guess, as the choice that is conditioned best (the observability
+/// indices, where there are thousands of choices).
 ///
 /// Reference: J. P. Gauthier, H. Hammouri, S. Othman, A simple observer for nonlinear systems, IEEE TAC 37(6), 1992; for
 /// several outputs G. Bornard and H. Hammouri, CDC 1991.
@@ -50,6 +51,12 @@ const LEAST: f64 = 1e-6;
 
 /// A matrix whose scaled condition is worse than this is taken to be singular.
 const SINGULAR: f64 = 1e9;
+
+/// So many derivatives of an output are coordinates at most, itself included: a third derivative would need the second derivatives of the signals.
+const LONGEST: usize = 3;
+
+/// So many choices of derivatives are looked at; where there are more, that of the observability indices alone.
+const MOST_CHOICES: usize = 2000;
 
 /// The derivatives of the canonical coordinates by the states: one row a coordinate, output by output.
 struct Canonical {
@@ -208,35 +215,46 @@ impl Canonical {
             return Err("an output is not one of the states that are followed".to_owned());
         }
         let (n, m) = (model.states.len(), model.outputs.len());
-        let mut best: Option<(f64, Canonical)> = None;
         let (rates, states) = (model.rate_nodes.clone(), model.symbols.clone());
         let slopes: Vec<NodeId> =
             rates.into_iter().flat_map(|rate| gradient(&mut model.system.graph, rate, &states)).collect();
         let jacobian = model.formulas(&slopes, &HashMap::new(), task.signals);
         let jacobian = jacobian.map_err(|error| error.to_string())?;
-        for lengths in compositions(n, m) {
-            let longest = lengths.iter().copied().max().unwrap_or(0);
-            // a third derivative would need the second derivatives of the signals
-            if longest > 3 {
+        // a choice of derivatives is a choice among the rows of this one
+        let mut canonical = Canonical { lengths: Vec::new(), rows: jacobian.clone(), jacobian, model };
+        let mut why = format!("there is no choice of {n} derivatives of the {m} outputs");
+        for longest in (1..=LONGEST.min((n + 1).saturating_sub(m))).rev() {
+            match canonical.choose(vec![longest; m], task) {
+                Ok(()) => {}
+                Err(refused) => {
+                    why = refused;
+                    continue;
+                }
+            }
+            let Some(all) = canonical.matrix(task, task.signals.times()[0], state) else {
+                why = "the derivatives of the outputs have no value at the first guess".to_owned();
                 continue;
+            };
+            let choices = compositions(n, m, longest);
+            let looked_at = if choices.is_some() { "choice" } else { "choice that was looked at" };
+            let choices = choices.unwrap_or_else(|| vec![observability_indices(&all, longest)]);
+            if let Some(lengths) = best_lengths(choices, &all, longest, |matrix| condition(matrix, task)) {
+                canonical.choose(lengths, task)?;
+                return Ok(canonical);
             }
-            let (rows, rates) = coordinate_rows(&mut model, &lengths);
-            let rows = model.formulas(&rows, &rates, task.signals).map_err(|error| error.to_string())?;
-            let canonical = Canonical { lengths, rows, jacobian: jacobian.clone(), model: model.clone() };
-            let condition =
-                canonical.matrix(task, task.signals.times()[0], state).map(|matrix| condition(&matrix, task));
-            if let Some(condition) = condition.filter(|condition| *condition < SINGULAR)
-                && best.as_ref().is_none_or(|(least, _)| condition < *least)
-            {
-                best = Some((condition, canonical));
-            }
+            return Err(format!(
+                "no {looked_at} of {n} derivatives of the {m} outputs, at most second ones, is regular at the first guess"
+            ));
         }
-        let none = || {
-            format!(
-                "no choice of {n} derivatives of the {m} outputs, at most second ones, is regular at the first guess"
-            )
-        };
-        best.map(|(_, canonical)| canonical).ok_or_else(none)
+        Err(why)
+    }
+
+    /// Takes so many derivatives of each output for coordinates.
+    fn choose(&mut self, lengths: Vec<usize>, task: &Task<'_>) -> Result<(), String> {
+        let (rows, rates) = coordinate_rows(&mut self.model, &lengths);
+        self.rows = self.model.formulas(&rows, &rates, task.signals).map_err(|error| error.to_string())?;
+        self.lengths = lengths;
+        Ok(())
     }
 
     /// `dPhi/dx`.
@@ -245,7 +263,10 @@ impl Canonical {
         let inputs = inputs_at(task, &self.model, &self.rows, time, x);
         let values = program.run(&inputs, &mut Vec::new()).ok()?;
         let n = self.model.states.len();
-        values.iter().all(|value| value.is_finite()).then(|| DMatrix::from_row_slice(n, n, &values))
+        values
+            .iter()
+            .all(|value| value.is_finite())
+            .then(|| DMatrix::from_row_slice(values.len() / n, n, &values))
     }
 
     /// The places of the outputs among the states.
@@ -376,19 +397,92 @@ fn along(
     graph.sum(terms)
 }
 
-/// All ways to write `n` as a sum of `m` positive numbers.
-fn compositions(n: usize, m: usize) -> Vec<Vec<usize>> {
-    if m == 0 || n < m {
-        return Vec::new();
+/// That of the choices whose rows, a square matrix, are conditioned best, and better than [`SINGULAR`]; `all` has the rows of `longest`
+/// derivatives of each output, output by output.
+fn best_lengths(
+    choices: Vec<Vec<usize>>,
+    all: &DMatrix<f64>,
+    longest: usize,
+    condition: impl Fn(&DMatrix<f64>) -> f64,
+) -> Option<Vec<usize>> {
+    let graded =
+        choices.into_iter().filter(|lengths| lengths.iter().sum::<usize>() == all.ncols()).map(|lengths| {
+            let rows = lengths.iter().enumerate();
+            let rows: Vec<usize> =
+                rows.flat_map(|(output, length)| (0..*length).map(move |k| output * longest + k)).collect();
+            (condition(&all.select_rows(&rows)), lengths)
+        });
+    let best =
+        graded.filter(|(condition, _)| *condition < SINGULAR).reduce(|a, b| if b.0 < a.0 { b } else { a });
+    best.map(|(_, lengths)| lengths)
+}
+
+/// The observability indices of rows, `longest` of each output: a derivative is taken wherever it is independent of all lower ones and of
+/// those of its order before it, and the one below it was taken.
+fn observability_indices(all: &DMatrix<f64>, longest: usize) -> Vec<usize> {
+    let m = all.nrows() / longest;
+    let mut lengths = vec![0; m];
+    let mut basis: Vec<RowDVector<f64>> = Vec::new();
+    for k in 0..longest {
+        for (output, length) in lengths.iter_mut().enumerate().filter(|(_, length)| **length == k) {
+            let row = all.row(output * longest + k).into_owned();
+            let size = row.norm();
+            // twice: what rounding leaves of the first projection is taken away by the second
+            let rest =
+                (0..2).fold(row, |row, _| basis.iter().fold(row, |row, unit| &row - unit * row.dot(unit)));
+            if rest.norm() > size / SINGULAR.sqrt() {
+                basis.push(rest.normalize());
+                *length += 1;
+            }
+        }
     }
-    if m == 1 {
-        return vec![vec![n]];
+    lengths
+}
+
+/// All ways to write `n` as a sum of `m` positive numbers of which none is larger than `most`; nothing where there are more than
+/// [`MOST_CHOICES`].
+fn compositions(n: usize, m: usize, most: usize) -> Option<Vec<Vec<usize>>> {
+    let mut begun = vec![Vec::new()];
+    for left in (0..m).rev() {
+        let with = |lengths: &Vec<usize>| {
+            let rest = n.saturating_sub(lengths.iter().sum());
+            let fits = (1..=most).filter(move |k| (left..=left * most).contains(&rest.wrapping_sub(*k)));
+            fits.map(|k| [&lengths[..], &[k]].concat()).collect::<Vec<_>>()
+        };
+        begun = begun.iter().flat_map(with).collect();
+        if begun.len() > MOST_CHOICES {
+            return None;
+        }
     }
-    let first = 1..=n - m + 1;
-    let with = |k: usize| compositions(n - k, m - 1).into_iter().map(move |rest| [vec![k], rest].concat());
-    first.flat_map(with).collect()
+    Some(begun)
 }
 
 fn binomial(n: usize, k: usize) -> f64 {
     (0..k).fold(1.0, |value, i| value * (n - i) as f64 / (i + 1) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn choices_are_all_or_none() {
+        assert_eq!(compositions(4, 2, 3), Some(vec![vec![1, 3], vec![2, 2], vec![3, 1]]));
+        assert_eq!(compositions(7, 2, 3), Some(Vec::new()));
+        assert_eq!(compositions(1, 2, 3), Some(Vec::new()));
+        // coefficients of (x + x^2 + x^3)^6
+        assert_eq!(compositions(12, 6, 3).map(|all| all.len()), Some(141));
+        // 77 million without a bound on each part
+        assert_eq!(compositions(30, 15, 3), None);
+    }
+
+    #[test]
+    fn observability_indices_take_the_lowest_derivatives_that_are_independent() {
+        // y1' is y2, and y2 has a second derivative of its own
+        let rows = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
+        let all = DMatrix::from_fn(6, 4, |i, j| f64::from(rows[i][j]));
+        assert_eq!(observability_indices(&all, 3), [1, 3]);
+        let condition = |matrix: &DMatrix<f64>| if matrix.determinant() == 0.0 { f64::INFINITY } else { 1.0 };
+        assert_eq!(best_lengths(compositions(4, 2, 3).unwrap(), &all, 3, condition), Some(vec![1, 3]));
+    }
 }

@@ -64,8 +64,9 @@ impl Segments<'_> {
     /// The segments at some nodes.
     ///
     /// # Errors
-    /// Where one of them cannot be followed to its end.
+    /// Where one of them cannot be followed to its end, or all of them would take too much memory.
     pub fn expand(&self, nodes: &Nodes) -> Result<Vec<Segment>, Lost> {
+        self.flow.affordable(self.times, self.moving.len() + self.constant.len(), Order::First)?;
         (0..self.rows.len()).map(|place| self.segment(nodes, place)).collect()
     }
 
