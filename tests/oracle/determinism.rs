@@ -1,4 +1,4 @@
-//! The same verdicts for any number of threads and any order of the claims.
+//! The same verdicts for any number of threads, any order of the claims and any names of theirs.
 
 use super::condition_sets::{ANGLES, PLAIN, anchor, through};
 use super::dice::Dice;
@@ -47,6 +47,15 @@ fn one_case(case: u64, findings: &mut Findings) {
         if threads(n, &forward) != first {
             findings.fault("threads change a verdict", format!("{n} threads"), &forward);
         }
+    }
+    let renamed: Vec<String> =
+        claims.iter().map(|claim| claim.replacen("claim ", "claim called_", 1)).collect();
+    let mut called = threads(3, &text(&renamed));
+    for said in called.iter_mut().flatten() {
+        said.id = said.id.replacen("called_", "", 1);
+    }
+    if called != first {
+        findings.fault("names of claims change a verdict", format!("{first:?}"), &text(&renamed));
     }
     claims.reverse();
     let mut backward = threads(3, &text(&claims));
