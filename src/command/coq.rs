@@ -9,10 +9,11 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// The library on which the theorems rest, as it stands in `proofs/coq`.
-const LIBRARY: [(&str, &str); 3] = [
+const LIBRARY: [(&str, &str); 4] = [
     ("Lie.v", include_str!("../../proofs/coq/Lie.v")),
     ("Check.v", include_str!("../../proofs/coq/Check.v")),
     ("Point.v", include_str!("../../proofs/coq/Point.v")),
+    ("Rank.v", include_str!("../../proofs/coq/Rank.v")),
 ];
 
 /// What stands in a folder of theorems.
@@ -66,7 +67,7 @@ impl Theorems {
         let file = |(file, name, found): &(String, String, Exported)| {
             let left_out: Vec<Value> =
                 found.left_out.iter().map(|one| json!({ "id": one.id, "reason": one.reason })).collect();
-            json!({ "file": file, "coq": name, "theorems": found.claims, "refuted": found.refuted, "left_out": left_out })
+            json!({ "file": file, "coq": name, "theorems": found.claims, "reached": found.reached, "refuted": found.refuted, "left_out": left_out })
         };
         json!({ "folder": shown_path(&self.folder), "files": self.files.iter().map(file).collect::<Vec<_>>() })
     }
@@ -76,9 +77,10 @@ impl Theorems {
         let count =
             |of: fn(&Exported) -> usize| self.files.iter().map(|(_, _, found)| of(found)).sum::<usize>();
         let (theorems, refuted) = (count(|found| found.claims.len()), count(|found| found.refuted.len()));
+        let reached = count(|found| found.reached.len());
         let folder = shown_path(&self.folder);
         format!(
-            "{folder}: {theorems} of {} claims as theorems, {refuted} wrong forms refuted at a state; others are at the end of each file, with reasons\n\
+            "{folder}: {theorems} of {} claims as theorems, {reached} ranks of which it is one that they are reached, {refuted} wrong forms refuted at a state; others are at the end of each file, with reasons\n\
              check them there: coq_makefile -f _CoqProject -o Makefile && make",
             self.claims
         )

@@ -25,6 +25,8 @@ pub(crate) struct Definitions {
     pub values: BTreeMap<String, Result<Known, Reason>>,
     /// Fields, likewise.
     pub fields: BTreeMap<String, Result<String, Reason>>,
+    /// The outputs of the outermost file: terms, and the names that they mention.
+    pub outputs: Vec<Result<(String, BTreeSet<String>), Reason>>,
     files: HashMap<PathBuf, Option<Rc<System>>>,
     /// How many imports were followed.
     imports: usize,
@@ -58,6 +60,12 @@ impl Definitions {
                     };
                     self.fields.insert(format!("{prefix}{name}"), found);
                 }
+                Entry::Output { value } if prefix.is_empty() => {
+                    let mut printer = self.printer(system, prefix, names);
+                    let found = printer.scalar(&value).map(|found| (found.text, printer.used));
+                    self.outputs.push(found);
+                }
+                Entry::Output { .. } => (),
             }
         }
     }

@@ -4,6 +4,7 @@
 
 use crate::place::extent;
 use crate::printer::Reason;
+use crate::residue::{PRIME, residue, times};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
 use palmistry_math::expression::{Graph, Node, NodeId};
@@ -11,8 +12,6 @@ use palmistry_math::number::Function;
 use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
 
-/// The coefficients are numbers modulo this prime.
-const PRIME: u64 = (1 << 61) - 1;
 /// So many products of monomials are up to twenty seconds of Coq.
 const MOST_WORK: u64 = 3_000_000;
 /// Nor of terms with more parts, written out: each of them is looked at.
@@ -70,16 +69,6 @@ pub(crate) fn foreseen(graph: &Graph, left: NodeId, right: NodeId) -> Result<(),
 
 fn constant(value: u64) -> Polynomial {
     if value == 0 { Polynomial::new() } else { Polynomial::from([(Monomial::new(), value)]) }
-}
-
-fn residue(value: &IBig) -> u64 {
-    let rest = u64::try_from(value % IBig::from(PRIME)).ok();
-    let negative = u64::try_from(-(value % IBig::from(PRIME))).ok();
-    rest.or(negative.map(|negative| PRIME - negative)).unwrap_or_default() % PRIME
-}
-
-fn times(a: u64, b: u64) -> u64 {
-    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
 }
 
 fn negated(mut p: Polynomial) -> Polynomial {

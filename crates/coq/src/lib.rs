@@ -13,6 +13,9 @@ mod foreseen;
 mod names;
 mod place;
 mod printer;
+mod rank;
+mod rank_theorem;
+mod residue;
 mod theorem;
 
 pub use theorem::{Exported, NoTheorem, exported, stated};

@@ -57,6 +57,9 @@ pub(crate) struct Found {
     pub differs: Option<usize>,
 }
 
+/// Coordinates of a state.
+pub(crate) type State = Vec<(Symbol, Coordinate)>;
+
 /// A state that meets the conditions and at which all entries have values; where one has to differ, such a state.
 /// `named` are the variables of what is printed.
 pub(crate) fn place(
@@ -65,6 +68,31 @@ pub(crate) fn place(
     named: &BTreeSet<Symbol>,
     has_to_differ: bool,
 ) -> Option<Found> {
+    let ask = |values: &mut Values<'_>| {
+        let mut differs = None;
+        for (entry, (left, right)) in compared.left.iter().zip(&compared.right).enumerate() {
+            match (values.of(*left), values.of(*right)) {
+                (Some(left), Some(right)) if left != right => differs = differs.or(Some(entry)),
+                (Some(_), Some(_)) => (),
+                // one entry that differs is enough
+                _ if has_to_differ => (),
+                _ => return None,
+            }
+        }
+        (differs.is_some() || !has_to_differ).then_some(differs)
+    };
+    let (state, differs) = search(system, compared, named, TRIES, ask)?;
+    Some(Found { state, differs })
+}
+
+/// The first state that meets the conditions and of which what is asked of its values has an answer, among so many.
+pub(crate) fn search<T>(
+    system: &System,
+    compared: &Compared,
+    named: &BTreeSet<Symbol>,
+    tries: u64,
+    mut ask: impl FnMut(&mut Values<'_>) -> Option<T>,
+) -> Option<(State, T)> {
     let graph = &system.graph;
     let nodes: Vec<NodeId> = compared
         .left
@@ -82,7 +110,7 @@ pub(crate) fn place(
     symbols.extend(graph.symbols_of(nodes.iter().copied()));
     let mut angles = angles(graph, &nodes);
     angles.extend(symbols.iter().copied().filter(|symbol| system.is_angle(*symbol)));
-    (0..TRIES).find_map(|attempt| {
+    (0..tries).find_map(|attempt| {
         let mut state: BTreeMap<Symbol, Coordinate> = BTreeMap::new();
         for (symbol, number) in symbols.iter().zip(0u64..) {
             // neighbours differ, and the first tries are all positive
@@ -97,7 +125,7 @@ pub(crate) fn place(
         for _ in 0..compared.conditions.len() {
             give(graph, &mut state, &compared.conditions);
         }
-        let mut values = Values { graph, state: &state, known: HashMap::new() };
+        let mut values = Values { graph, state: &state, known: HashMap::new(), exist: HashMap::new() };
         let is_met = compared.conditions.iter().all(|(left, relation, right)| {
             let (Some(left), Some(right)) = (values.of(*left), values.of(*right)) else { return false };
             match relation {
@@ -113,18 +141,8 @@ pub(crate) fn place(
         if !is_met || !compared.guards.iter().all(exists) {
             return None;
         }
-        let mut differs = None;
-        for (entry, (left, right)) in compared.left.iter().zip(&compared.right).enumerate() {
-            match (values.of(*left), values.of(*right)) {
-                (Some(left), Some(right)) if left != right => differs = differs.or(Some(entry)),
-                (Some(_), Some(_)) => (),
-                // one entry that differs is enough
-                _ if has_to_differ => (),
-                _ => return None,
-            }
-        }
-        let is_it = differs.is_some() || !has_to_differ;
-        is_it.then(|| Found { state: state.into_iter().collect(), differs })
+        let answer = ask(&mut values)?;
+        Some((state.into_iter().collect(), answer))
     })
 }
 
@@ -136,19 +154,74 @@ fn give(graph: &Graph, state: &mut BTreeMap<Symbol, Coordinate>, conditions: &[(
         }
         let symbol = |node: NodeId| graph.as_symbol(node);
         let pair = symbol(*left).map(|name| (name, *right)).or(symbol(*right).map(|name| (name, *left)));
-        let Some((name, value)) = pair else { continue };
-        let mut values = Values { graph, state, known: HashMap::new() };
-        let given = match state.get(&name) {
-            Some(Coordinate::Angle(_)) => values.circular(value).and_then(|(sine, cosine)| {
-                let below = RBig::ONE + cosine;
-                (!below.is_zero()).then(|| Coordinate::Angle(sine / below))
-            }),
-            _ => values.of(value).map(Coordinate::Number),
+        let found = match pair {
+            Some((name, value)) => {
+                let mut values = Values { graph, state, known: HashMap::new(), exist: HashMap::new() };
+                let given = match values.state.get(&name) {
+                    Some(Coordinate::Angle(_)) => values.circular(value).and_then(|(sine, cosine)| {
+                        let below = RBig::ONE + cosine;
+                        (!below.is_zero()).then(|| Coordinate::Angle(sine / below))
+                    }),
+                    _ => values.of(value).map(Coordinate::Number),
+                };
+                given.map(|given| (name, given))
+            }
+            None => turned(graph, state, *left, *right)
+                .or_else(|| turned(graph, state, *right, *left))
+                .or_else(|| root(graph, state, conditions, [*left, *right])),
         };
-        if let Some(given) = given {
-            state.insert(name, given);
-        }
+        state.extend(found);
     }
+}
+
+/// A number with which two sides are equal that are affine in it: of the one that the fewest other conditions name.
+fn root(
+    graph: &Graph,
+    state: &mut BTreeMap<Symbol, Coordinate>,
+    conditions: &[(NodeId, Relation, NodeId)],
+    [left, right]: [NodeId; 2],
+) -> Option<(Symbol, Coordinate)> {
+    let named: Vec<Vec<Symbol>> =
+        conditions.iter().map(|(left, _, right)| graph.symbols_of([*left, *right])).collect();
+    let mut candidates = graph.symbols_of([left, right]);
+    candidates.retain(|symbol| matches!(state.get(symbol), Some(Coordinate::Number(_))));
+    candidates.sort_by_key(|symbol| (named.iter().filter(|of| of.contains(symbol)).count(), *symbol));
+    candidates.into_iter().find_map(|symbol| {
+        let before = state.get(&symbol).cloned()?;
+        let at = [0, 1, 2].map(|value| {
+            state.insert(symbol, Coordinate::Number(value.into()));
+            let mut values = Values { graph, state, known: HashMap::new(), exist: HashMap::new() };
+            Some(values.of(left)? - values.of(right)?)
+        });
+        state.insert(symbol, before);
+        let [Some(at_0), Some(at_1), Some(at_2)] = at else { return None };
+        let slope = at_1 - &at_0;
+        let is_affine = at_2 - &at_0 == RBig::from(2) * &slope;
+        (is_affine && !slope.is_zero()).then(|| (symbol, Coordinate::Number(-at_0 / slope)))
+    })
+}
+
+/// An angle by the tangent of its half at which a sine or a cosine vanishes: `sin(a)`, `cos(a)`, `sin(a + b)`, `sin(a - b)`.
+fn turned(
+    graph: &Graph,
+    state: &BTreeMap<Symbol, Coordinate>,
+    turn: NodeId,
+    zero: NodeId,
+) -> Option<(Symbol, Coordinate)> {
+    graph.constant_value(zero).filter(|value| value.is_zero())?;
+    let Node::Apply(function @ (Function::Sin | Function::Cos), of) = graph.node(turn) else { return None };
+    let half = |symbol: Symbol| match state.get(&symbol) {
+        Some(Coordinate::Angle(half)) => Some(half.clone()),
+        _ => None,
+    };
+    let (symbol, half) = match (graph.node(of), function) {
+        (Node::Symbol(symbol), Function::Sin) => (symbol, RBig::ZERO),
+        (Node::Symbol(symbol), _) => (symbol, RBig::ONE),
+        (Node::Add(a, b), Function::Sin) => (graph.as_symbol(a)?, -half(graph.as_symbol(b)?)?),
+        (Node::Sub(a, b), Function::Sin) => (graph.as_symbol(a)?, half(graph.as_symbol(b)?)?),
+        _ => return None,
+    };
+    Some((symbol, Coordinate::Angle(half)))
 }
 
 /// How much there is of some terms that are written out.
@@ -201,14 +274,37 @@ fn bits(value: &RBig) -> usize {
     value.numerator().bit_len() + value.denominator().bit_len()
 }
 
-struct Values<'a> {
+/// Values at a state, each calculated once.
+pub(crate) struct Values<'a> {
     graph: &'a Graph,
     state: &'a BTreeMap<Symbol, Coordinate>,
     known: HashMap<NodeId, Option<RBig>>,
+    /// Of each whether it has a value, calculated or not.
+    exist: HashMap<NodeId, bool>,
 }
 
 impl Values<'_> {
-    fn of(&mut self, id: NodeId) -> Option<RBig> {
+    /// Whether a term has a value and derivatives there, also one that is not calculated, such as an angle; as the library has it
+    /// (`is_smooth_at`).
+    pub fn exists(&mut self, id: NodeId) -> bool {
+        if let Some(known) = self.exist.get(&id) {
+            return *known;
+        }
+        let node = self.graph.node(id);
+        let own = match node {
+            Node::Div(_, below) => self.of(below).is_some_and(|value| !value.is_zero()),
+            Node::Power(base, ..0) => self.of(base).is_some_and(|value| !value.is_zero()),
+            Node::Apply(Function::Sin | Function::Cos | Function::Exp | Function::Atan, _) => true,
+            Node::Apply(Function::Sqrt | Function::Log, of) => self.of(of).is_some_and(|value| value > RBig::ZERO),
+            Node::Apply(..) => false,
+            _ => true,
+        };
+        let found = own && node.operands().all(|part| self.exists(part));
+        self.exist.insert(id, found);
+        found
+    }
+
+    pub fn of(&mut self, id: NodeId) -> Option<RBig> {
         if let Some(known) = self.known.get(&id) {
             return known.clone();
         }

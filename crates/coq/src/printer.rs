@@ -68,7 +68,7 @@ impl Printed {
     }
 
     /// As a matrix.
-    fn as_matrix(&self) -> Printed {
+    pub fn as_matrix(&self) -> Printed {
         match self.kind {
             Kind::Number => {
                 Printed { text: format!("[[{}]]", self.text), kind: Kind::Matrix(1, 1), hold: Hold::Name }

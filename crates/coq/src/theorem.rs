@@ -3,14 +3,15 @@
 use crate::definitions::Definitions;
 use crate::foreseen::foreseen;
 use crate::names::{Names, in_comment};
-use crate::place::{Compared, Coordinate, DEEPEST, Found, extent, place};
+use crate::place::{Compared, Coordinate, DEEPEST, State, extent, place};
 use crate::printer::{Kind, Printed, Printer, Reason};
+use crate::rank_theorem::rank_of;
 use dashu::rational::RBig;
 use palmistry_lang::{
     Assignment, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line,
 };
 use palmistry_math::expression::syntax::{Equation, Expr, ExprKind, Relation};
-use palmistry_math::expression::{NodeId, Symbol};
+use palmistry_math::expression::{Guard, NodeId, Symbol};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
@@ -20,6 +21,8 @@ pub struct Exported {
     pub text: String,
     /// The claims whose statement is a theorem in it, by their ids.
     pub claims: Vec<String>,
+    /// The claims on a rank of which it is a theorem that the rank is reached at a state, and none that it is not exceeded.
+    pub reached: Vec<String>,
     /// The claims with a form that a theorem refutes at a state: what is claimed to be refuted, or a form in print.
     pub refuted: Vec<String>,
     /// The others, and forms in print of which there is no theorem.
@@ -35,9 +38,9 @@ pub struct NoTheorem {
 }
 
 /// A theorem before its definitions are known to be printed.
-struct Theorem {
-    text: String,
-    uses: BTreeSet<String>,
+pub(crate) struct Theorem {
+    pub text: String,
+    pub uses: BTreeSet<String>,
 }
 
 /// The theorems of a file, of those of its claims that are `wanted`: that a claim is proved is for others to say. What the library is not
@@ -55,8 +58,13 @@ fn written(system: &System, wanted: &dyn Fn(&str) -> Result<(), String>, to_be_p
     let mut names = Names::default();
     let mut definitions = Definitions::default();
     definitions.add(system, "", &mut names);
-    let mut found =
-        Exported { text: String::new(), claims: Vec::new(), refuted: Vec::new(), left_out: Vec::new() };
+    let mut found = Exported {
+        text: String::new(),
+        claims: Vec::new(),
+        reached: Vec::new(),
+        refuted: Vec::new(),
+        left_out: Vec::new(),
+    };
     let mut theorems = Vec::new();
     // one copy for all claims: terms are written into its graph
     let mut scratch = system.clone();
@@ -75,10 +83,11 @@ fn written(system: &System, wanted: &dyn Fn(&str) -> Result<(), String>, to_be_p
         };
         let (right, wrong) = statements_of(claim);
         if let Some(statement) = right {
-            let proved = wanted(&claim.id).and_then(|()| of.identities(statement, to_be_proved));
+            let proved = wanted(&claim.id).and_then(|()| of.theorems(statement, to_be_proved));
             match proved {
-                Ok(proved) => {
-                    found.claims.push(claim.id.clone());
+                Ok((proved, is_whole)) => {
+                    let list = if is_whole { &mut found.claims } else { &mut found.reached };
+                    list.push(claim.id.clone());
                     theorems.extend(proved);
                 }
                 Err(reason) => found.left_out.push(NoTheorem { id: claim.id.clone(), reason }),
@@ -127,7 +136,7 @@ fn file(system: &System, definitions: &Definitions, theorems: &[Theorem], left_o
     }
     let _ = write!(
         text,
-        "\n   From {}. *)\n\nFrom Palmistry Require Import Lie Check Point.\nOpen Scope term_scope.\n\n",
+        "\n   From {}. *)\n\nFrom Palmistry Require Import Lie Check Point Rank.\nOpen Scope term_scope.\n\n",
         in_comment(&system.name)
     );
     for (variable, number) in variables.iter().zip(1..) {
@@ -155,15 +164,15 @@ fn file(system: &System, definitions: &Definitions, theorems: &[Theorem], left_o
 }
 
 /// A claim, and where its theorems are written.
-struct OfClaim<'a> {
-    system: &'a System,
-    claim: &'a ClaimSyntax,
-    definitions: &'a Definitions,
-    names: &'a mut Names,
+pub(crate) struct OfClaim<'a> {
+    pub system: &'a System,
+    pub claim: &'a ClaimSyntax,
+    pub definitions: &'a Definitions,
+    pub names: &'a mut Names,
     /// A copy of the system.
-    scratch: &'a mut System,
+    pub scratch: &'a mut System,
     /// The variables of Coq.
-    symbols: &'a BTreeMap<String, Symbol>,
+    pub symbols: &'a BTreeMap<String, Symbol>,
 }
 
 /// Both sides of an equation, and what it is claimed under.
@@ -174,6 +183,23 @@ struct Said {
 }
 
 impl OfClaim<'_> {
+    /// What a statement says; whether that is all of it.
+    fn theorems(
+        &mut self,
+        statement: &Statement,
+        to_be_proved: bool,
+    ) -> Result<(Vec<Theorem>, bool), Reason> {
+        match rank_of(statement) {
+            // what is shown at a state is not stated without it
+            Some(_) if !to_be_proved => Err("a rank".to_owned()),
+            Some(asked) => {
+                let (theorem, is_whole) = self.rank(statement, &asked, 0)?;
+                Ok((vec![theorem], is_whole))
+            }
+            None => Ok((self.identities(statement, to_be_proved)?, true)),
+        }
+    }
+
     /// That the sides are equal, and that there is a state at which they have values, where one is found.
     fn identities(&mut self, statement: &Statement, to_be_proved: bool) -> Result<Vec<Theorem>, Reason> {
         refuse(statement)?;
@@ -218,9 +244,9 @@ impl OfClaim<'_> {
                     said.listed(),
                     said.left.argument(),
                     said.right.argument(),
-                    self.state(&place)
+                    self.state(&place.state)
                 );
-                found.push(Theorem { text, uses: uses_with(uses, &place, self) });
+                found.push(Theorem { text, uses: uses_with(uses, &place.state, self) });
             }
         }
         Ok(found)
@@ -228,6 +254,10 @@ impl OfClaim<'_> {
 
     /// That the sides differ at a state.
     fn refutation(&mut self, statement: &Statement) -> Result<Theorem, Reason> {
+        if let Some(asked) = rank_of(statement) {
+            // one that is larger at some state
+            return self.rank(statement, &asked, 1).map(|(theorem, _)| theorem);
+        }
         refuse(statement)?;
         if !statement.further.is_empty() {
             return Err("several equations in one".to_owned());
@@ -251,18 +281,18 @@ impl OfClaim<'_> {
             said.listed(),
             side(&said.left),
             side(&said.right),
-            self.state(&found)
+            self.state(&found.state)
         );
-        Ok(Theorem { text, uses: uses_with(uses, &found, self) })
+        Ok(Theorem { text, uses: uses_with(uses, &found.state, self) })
     }
 
     /// The variables that these names rest on.
-    fn variables(&self, uses: &BTreeSet<String>) -> BTreeSet<Symbol> {
+    pub fn variables(&self, uses: &BTreeSet<String>) -> BTreeSet<Symbol> {
         let (_, variables) = self.definitions.needed(uses);
         variables.iter().filter_map(|ident| self.symbols.get(ident).copied()).collect()
     }
 
-    fn comment(&self, statement: &Statement) -> String {
+    pub fn comment(&self, statement: &Statement) -> String {
         let text = in_comment(&in_one_line(&self.system.source, &statement.span));
         format!("(* {}: {text} *)\n", in_comment(&self.claim.id))
     }
@@ -283,16 +313,15 @@ impl OfClaim<'_> {
         if left.kind != right.kind {
             return Err("sides of two shapes".to_owned());
         }
-        let list: Vec<String> = conditions
-            .iter()
-            .map(|condition| condition_of(&mut printer, condition))
-            .collect::<Result<_, _>>()?;
-        let conditions = if list.is_empty() { String::new() } else { format!("[{}]", list.join("; ")) };
+        if !conditions.iter().all(|condition| is_solved(self.system, condition)) {
+            return Err("a condition that is not solved for a variable".to_owned());
+        }
+        let conditions = conditions_in(&mut printer, conditions)?;
         Ok((Said { left, right, conditions }, printer.used))
     }
 
     /// A state, by its coordinates.
-    fn state(&mut self, found: &Found) -> String {
+    pub fn state(&mut self, state: &State) -> String {
         let number = |value: &RBig| match *value < RBig::ZERO {
             true => format!("({}) {}", value.numerator(), value.denominator()),
             false => format!("{} {}", value.numerator(), value.denominator()),
@@ -304,9 +333,9 @@ impl OfClaim<'_> {
                 Coordinate::Angle(half) => format!("({name}, Angle {})", number(half)),
             }
         };
-        match found.state.is_empty() {
+        match state.is_empty() {
             true => "anywhere".to_owned(),
-            false => format!("[{}]", found.state.iter().map(coordinate).collect::<Vec<_>>().join("; ")),
+            false => format!("[{}]", state.iter().map(coordinate).collect::<Vec<_>>().join("; ")),
         }
     }
 }
@@ -314,13 +343,18 @@ impl OfClaim<'_> {
 impl Said {
     /// The conditions as an argument.
     fn listed(&self) -> String {
-        if self.conditions.is_empty() { "[]".to_owned() } else { format!("({})%condition", self.conditions) }
+        as_argument(&self.conditions)
     }
 }
 
+/// Conditions as an argument.
+pub(crate) fn as_argument(conditions: &str) -> String {
+    if conditions.is_empty() { "[]".to_owned() } else { format!("({conditions})%condition") }
+}
+
 /// What a theorem mentions, with the variables of a state.
-fn uses_with(mut uses: BTreeSet<String>, found: &Found, of: &mut OfClaim<'_>) -> BTreeSet<String> {
-    for (symbol, _) in &found.state {
+pub(crate) fn uses_with(mut uses: BTreeSet<String>, state: &State, of: &mut OfClaim<'_>) -> BTreeSet<String> {
+    for (symbol, _) in state {
         uses.insert(of.names.of("value", of.system.symbol_name(*symbol)));
     }
     uses
@@ -335,7 +369,7 @@ fn refuse_depth(system: &System, nodes: &[NodeId]) -> Result<(), Reason> {
 }
 
 /// What no equation of the library says.
-fn refuse(statement: &Statement) -> Result<(), Reason> {
+pub(crate) fn refuse(statement: &Statement) -> Result<(), Reason> {
     if statement.carried.is_some() {
         return Err("a number in print".to_owned());
     }
@@ -345,16 +379,25 @@ fn refuse(statement: &Statement) -> Result<(), Reason> {
     Ok(())
 }
 
+/// Whether a condition gives a variable, or takes away no dimension.
+pub(crate) fn is_solved(system: &System, condition: &Equation) -> bool {
+    let is_symbol = |expr: &Expr| match &expr.kind {
+        ExprKind::Name(name) => system.find_symbol(name).is_some(),
+        _ => false,
+    };
+    condition.relation != Relation::Equal || is_symbol(&condition.left) || is_symbol(&condition.right)
+}
+
+/// The list of some conditions; nothing where there are none.
+pub(crate) fn conditions_in(printer: &mut Printer<'_>, conditions: &[Equation]) -> Result<String, Reason> {
+    let list: Vec<String> =
+        conditions.iter().map(|condition| condition_of(printer, condition)).collect::<Result<_, _>>()?;
+    Ok(if list.is_empty() { String::new() } else { format!("[{}]", list.join("; ")) })
+}
+
 fn condition_of(printer: &mut Printer<'_>, condition: &Equation) -> Result<String, Reason> {
     if condition.within.is_some() {
         return Err("a condition with a tolerance".to_owned());
-    }
-    let is_symbol = |expr: &Expr| match &expr.kind {
-        ExprKind::Name(name) => printer.system.find_symbol(name).is_some(),
-        _ => false,
-    };
-    if condition.relation == Relation::Equal && !is_symbol(&condition.left) && !is_symbol(&condition.right) {
-        return Err("a condition that is not solved for a variable".to_owned());
     }
     let (left, right) = (printer.scalar(&condition.left)?, printer.scalar(&condition.right)?);
     let sign = match condition.relation {
@@ -370,26 +413,40 @@ fn condition_of(printer: &mut Printer<'_>, condition: &Equation) -> Result<Strin
 
 /// Both sides, entry by entry, and the conditions.
 fn compared(system: &mut System, equation: &Equation, conditions: &[Equation]) -> Result<Compared, Reason> {
-    let mut guards = Vec::new();
-    let mut entries = |side: &Expr| {
-        let (value, needs) = system.elaborate_guarded(side).map_err(|problem| problem.message)?;
-        guards.extend(needs);
-        match value {
-            Value::Scalar(one) => Ok(vec![one]),
-            Value::Matrix(matrix) => Ok(matrix.entries),
-            other => Err(other.describe()),
-        }
-    };
-    let (left, right) = (entries(&equation.left)?, entries(&equation.right)?);
-    let mut given = Vec::new();
+    let mut found = under(system, conditions)?;
+    found.left = entries(system, &equation.left, &mut found.guards)?;
+    found.right = entries(system, &equation.right, &mut found.guards)?;
+    Ok(found)
+}
+
+/// The conditions, and nothing that is compared.
+pub(crate) fn under(system: &mut System, conditions: &[Equation]) -> Result<Compared, Reason> {
+    let mut found =
+        Compared { left: Vec::new(), right: Vec::new(), conditions: Vec::new(), guards: Vec::new() };
     for condition in conditions {
-        let mut side = |side: &Expr| match entries(side)?.as_slice() {
+        let mut side = |side: &Expr| match entries(system, side, &mut found.guards)?.as_slice() {
             [one] => Ok::<_, Reason>(*one),
             _ => Err("a condition of matrices".to_owned()),
         };
-        given.push((side(&condition.left)?, condition.relation, side(&condition.right)?));
+        let given = (side(&condition.left)?, condition.relation, side(&condition.right)?);
+        found.conditions.push(given);
     }
-    Ok(Compared { left, right, conditions: given, guards })
+    Ok(found)
+}
+
+/// The entries of a number or a matrix, by rows; and what has to hold for all of it to have values.
+pub(crate) fn entries(
+    system: &mut System,
+    side: &Expr,
+    guards: &mut Vec<Guard>,
+) -> Result<Vec<NodeId>, Reason> {
+    let (value, needs) = system.elaborate_guarded(side).map_err(|problem| problem.message)?;
+    guards.extend(needs);
+    match value {
+        Value::Scalar(one) => Ok(vec![one]),
+        Value::Matrix(matrix) => Ok(matrix.entries),
+        other => Err(other.describe()),
+    }
 }
 
 /// Left and right sides with what conditions give put in, as often as the library does: of two variables the first is given.

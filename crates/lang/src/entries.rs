@@ -6,7 +6,7 @@ use super::syntax::Item;
 use palmistry_math::expression::syntax::{Expr, Name};
 use std::path::PathBuf;
 
-/// A definition or a field as it stands in a file.
+/// A definition, a field or an output as it stands in a file.
 #[derive(Clone, Debug)]
 pub enum Entry {
     /// `let name = value`
@@ -25,18 +25,24 @@ pub enum Entry {
         /// Whether it takes states to their successors.
         is_map: bool,
     },
+    /// `output value`
+    Output {
+        /// What is measured.
+        value: Expr,
+    },
 }
 
-/// The definitions and fields of a text that has no mistake, in its order.
+/// The definitions, fields and outputs of a text that has no mistake, in its order.
 pub fn entries_of(text: &str) -> Vec<Entry> {
-    let entry = |item| match item {
-        Item::Let { name, value, .. } => Some(Entry::Definition { name: name.text, value }),
+    let entries = |item| match item {
+        Item::Let { name, value, .. } => vec![Entry::Definition { name: name.text, value }],
         Item::Field { name, components, is_map, .. } => {
-            Some(Entry::Field { name: name.text, components, is_map })
+            vec![Entry::Field { name: name.text, components, is_map }]
         }
-        _ => None,
+        Item::Output(list) => list.into_iter().map(|one| Entry::Output { value: one.value }).collect(),
+        _ => Vec::new(),
     };
-    parse_entries(text, 1).items.into_iter().filter_map(entry).collect()
+    parse_entries(text, 1).items.into_iter().flat_map(entries).collect()
 }
 
 impl System {
