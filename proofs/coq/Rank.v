@@ -389,12 +389,12 @@ Proof.
 Qed.
 
 (** The proofs of one line: at a state, by some rows, or by some Lie derivatives. *)
-Ltac rank_at p rows :=
+Tactic Notation "rank_at" uconstr(p) uconstr(rows) :=
   match goal with
   | |- greatest_rank _ _ _ => apply (greatest_rank_correct p rows)
   | |- rank_reaches _ _ _ => apply (rank_reaches_correct p rows)
   end; vm_cast_no_check (eq_refl true).
-Ltac observability_rank_at p words :=
+Tactic Notation "observability_rank_at" uconstr(p) uconstr(words) :=
   match goal with
   | |- greatest_observability_rank _ _ _ _ _ => apply (greatest_observability_rank_correct p words)
   | |- observability_rank_reaches _ _ _ _ _ => apply (observability_rank_reaches_correct p words)

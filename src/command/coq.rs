@@ -3,6 +3,7 @@
 use super::output::Files;
 use palmistry::coq::{Exported, exported};
 use palmistry::foreign::shown_path;
+use palmistry::report::TheoremAddresses;
 use palmistry::{Outcome, System, Verdict};
 use serde_json::{Value, json};
 use std::collections::{HashMap, HashSet};
@@ -62,6 +63,15 @@ impl Theorems {
         files.text(&self.folder.join("_CoqProject"), &project);
     }
 
+    /// Where each is written, by the file and the id of its claim: in this folder as a page names it.
+    pub fn addresses(&self, folder: &str) -> TheoremAddresses {
+        let of = |(file, name, found): &(String, String, Exported)| {
+            let ids = found.claims.iter().chain(&found.reached).chain(&found.refuted);
+            ids.map(|id| ((file.clone(), id.clone()), format!("{folder}/{name}"))).collect::<Vec<_>>()
+        };
+        self.files.iter().flat_map(of).collect()
+    }
+
     /// As JSON: for each file how many claims are theorems, and which are none, with the reason.
     pub fn object(&self) -> Value {
         let file = |(file, name, found): &(String, String, Exported)| {
@@ -80,7 +90,7 @@ impl Theorems {
         let reached = count(|found| found.reached.len());
         let folder = shown_path(&self.folder);
         format!(
-            "{folder}: {theorems} of {} claims as theorems, {reached} ranks of which it is one that they are reached, {refuted} wrong forms refuted at a state; others are at the end of each file, with reasons\n\
+            "{folder}: {theorems} of {} claims as theorems; of {reached} more on ranks, that these are reached; {refuted} wrong forms refuted at a state; others are at the end of each file, with reasons\n\
              check them there: coq_makefile -f _CoqProject -o Makefile && make",
             self.claims
         )

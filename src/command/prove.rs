@@ -38,7 +38,7 @@ pub(crate) struct Prove {
     pub watch: bool,
     /// Write what is proved as theorems for the proof assistant Coq into this folder: a file for each proof file, with its definitions and
     /// fields, and a library that is proved there. Coq computes all derivatives anew. Identities are written, with conditions that
-    /// give a variable; what is left out stands at the end of each file.
+    /// give a variable, and ranks that are reached; what is left out stands at the end of each file.
     #[arg(long, value_name = "DIR")]
     pub coq: Option<PathBuf>,
 }

@@ -1,14 +1,16 @@
 //! `palmistry verify`: a paper taken through everything.
 
+use super::coq::Theorems;
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
 use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
+use palmistry::System;
 use palmistry::file;
 use palmistry::foreign::shown;
 use palmistry::paper::{Findings, Paper, VerifyOptions, verify_into};
 use palmistry::report::{
-    errata_markdown, findings_json, findings_text, forget_seconds, forget_times, page, versioned,
+    errata_markdown, findings_json, findings_text, forget_seconds, forget_times, page_with, versioned,
 };
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -40,10 +42,16 @@ pub(crate) struct Verify {
     /// Measure no times: two runs with one seed on one machine then write the same to the last byte. Speed against accuracy is left out.
     #[arg(long)]
     no_times: bool,
+    /// Write what is proved as theorems for the proof assistant Coq beside the page, into the folder coq; claims on the page lead to them.
+    #[arg(long)]
+    coq: bool,
     /// Print everything that was found as one JSON object.
     #[arg(long)]
     pub json: bool,
 }
+
+/// The folder of theorems, beside the page.
+const THEOREMS: &str = "coq";
 
 impl Verify {
     pub fn run(self) -> miette::Result<Status> {
@@ -51,10 +59,21 @@ impl Verify {
         let (worker, filled) = (self.clone(), found.clone());
         let work = move || {
             worker.work(&filled)?;
+            let theorems = worker.coq.then(|| worker.theorems(&filled));
             begin_to_tell();
-            worker.tell(&filled)
+            worker.tell(&filled, theorems.as_ref())
         };
-        watched(work, || self.tell(&found))
+        watched(work, || self.tell(&found, None))
+    }
+
+    /// What is proved, as theorems.
+    fn theorems(&self, found: &Mutex<Findings>) -> Theorems {
+        let (systems, outcomes) = {
+            let found = found.lock().unwrap_or_else(PoisonError::into_inner);
+            let systems: Vec<System> = found.files.iter().map(|file| file.system.clone()).collect();
+            (systems, found.outcomes().cloned().collect::<Vec<_>>())
+        };
+        Theorems::of(&self.out.join(THEOREMS), &systems, &outcomes)
     }
 
     /// Finds out everything.
@@ -81,7 +100,7 @@ impl Verify {
     }
 
     /// Prints and writes what was found.
-    fn tell(&self, found: &Mutex<Findings>) -> miette::Result<Status> {
+    fn tell(&self, found: &Mutex<Findings>, theorems: Option<&Theorems>) -> miette::Result<Status> {
         let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
         found.interrupted |= interrupted();
         let mut json = versioned(findings_json(&found));
@@ -91,7 +110,12 @@ impl Verify {
         }
         let (html_file, json_file) = (self.out.join("index.html"), self.out.join("verify.json"));
         let mut files = Files::default();
-        files.text(&html_file, &page(&found));
+        let addresses = theorems.map(|theorems| theorems.addresses(THEOREMS)).unwrap_or_default();
+        if let Some(theorems) = theorems {
+            theorems.write(&mut files);
+            json["theorems"] = theorems.object();
+        }
+        files.text(&html_file, &page_with(&found, &addresses));
         files.text(&json_file, &format!("{}\n", serde_json::to_string(&json).unwrap_or_default()));
         files.text(&self.out.join("errata.md"), &errata_markdown(&found.paper, found.outcomes()));
         files.announce(&html_file);
@@ -103,7 +127,11 @@ impl Verify {
             _ if found.ok() => Status::AsExpected,
             _ => Status::NotAsExpected,
         };
-        files.print(Form::of(self.json), json, || findings_text(&found), status)
+        let in_words = || {
+            let theorems = theorems.map(|theorems| format!("\n{}", theorems.in_words()));
+            findings_text(&found) + &theorems.unwrap_or_default()
+        };
+        files.print(Form::of(self.json), json, in_words, status)
     }
 }
 

@@ -18,6 +18,9 @@ const AXIOMS: [&str; 4] = [
     "FunctionalExtensionality.functional_extensionality_dep",
 ];
 
+/// The library.
+const LIBRARY: [&str; 4] = ["Lie.v", "Check.v", "Point.v", "Rank.v"];
+
 fn coqc(folder: &Path, file: &str) -> Output {
     let run = Command::new("coqc").args(["-Q", ".", "Palmistry", file]).current_dir(folder).output();
     run.expect("coqc runs")
@@ -48,14 +51,18 @@ state phi, omega, by
 param k, match, unused
 angle phi
 drift f  phi' = omega  omega' = -k*sin(phi)  others' = 0
-output phi
+output phi, by
 let energy = omega^2/2 - k*cos(phi)
 let R = [cos(phi), -sin(phi); sin(phi), cos(phi)]
 claim 1.energy: L(f, energy) = 0
 claim 1.turned: transpose(R)*R = [1, 0; 0, 1]
 claim 1.where: energy = omega^2/2 where k = 0
 claim 1.at: (energy at {phi = 0}) + by*match = omega^2/2 - k + match*by
-claim 2.rank: rank = 2
+claim 2.rank: rank = 3
+claim 2.seen: rank([d(phi); d(L(f, phi))]) = 2
+claim 2.pieces: rank = 3 where sin(phi) = 0
+claim 2.rows: rank([omega, k; 2*omega, 2*k]) = 1
+claim 2.less expect refuted: rank = 2
 claim 2.wrong expect refuted: L(f, phi) = 2*omega
 claim 2.circle: omega*cos(phi)^2 = omega where sin(phi) = 0
 claim 2.laws: exp(by)*exp(omega)*log(exp(k)) = k*exp(by + omega)
@@ -65,16 +72,18 @@ claim 2.laws: exp(by)*exp(omega)*log(exp(k)) = k*exp(by + omega)
     let run = palmistry(&["prove", &file.to_string_lossy(), "--coq", &out.to_string_lossy(), "--json"]);
     let theorems = json(&run)["theorems"]["files"][0].clone();
     assert_eq!(theorems["coq"], "swing.v");
-    assert_eq!(theorems["theorems"], serde_json::json!(["1.energy", "1.turned", "1.where", "1.at"]));
+    let whole = ["1.energy", "1.turned", "1.where", "1.at", "2.rank", "2.seen"];
+    assert_eq!(theorems["theorems"], serde_json::json!(whole));
+    // a set in two pieces, and a matrix that could have more
+    assert_eq!(theorems["reached"], serde_json::json!(["2.pieces", "2.rows"]));
     let reasons: Vec<String> = theorems["left_out"]
         .as_array()
         .expect("a list")
         .iter()
         .map(|one| format!("{}: {}", one["id"].as_str().unwrap_or(""), one["reason"].as_str().unwrap_or("")))
         .collect();
-    assert_eq!(reasons.len(), 3, "{reasons:?}");
-    assert!(reasons.contains(&"2.rank: 'rank'".to_owned()), "{reasons:?}");
-    assert_eq!(theorems["refuted"], serde_json::json!(["2.wrong"]));
+    assert_eq!(reasons.len(), 2, "{reasons:?}");
+    assert_eq!(theorems["refuted"], serde_json::json!(["2.less", "2.wrong"]));
     let text = std::fs::read_to_string(out.join("swing.v")).expect("a file");
     assert!(
         text.contains("Definition f := field\n  [(phi, omega);\n   (omega, - (k * Sin phi))]."),
@@ -94,9 +103,9 @@ claim 2.laws: exp(by)*exp(omega)*log(exp(k)) = k*exp(by + omega)
     assert!(!text.contains("unused"), "{text}");
     assert_eq!(text.matches("(*").count(), text.matches("*)").count(), "{text}");
     let project = std::fs::read_to_string(out.join("_CoqProject")).expect("a file");
-    assert_eq!(project, "-Q . Palmistry\nLie.v\nCheck.v\nPoint.v\nswing.v\n");
+    assert_eq!(project, "-Q . Palmistry\nLie.v\nCheck.v\nPoint.v\nRank.v\nswing.v\n");
     if is_there() {
-        for file in ["Lie.v", "Check.v", "Point.v", "swing.v"] {
+        for file in LIBRARY.into_iter().chain(["swing.v"]) {
             compile(&out, file);
         }
         let uses = "From Palmistry Require Import Lie Check swing.\nPrint Assumptions claim_1_energy.\n";
@@ -133,7 +142,7 @@ fn what_would_keep_coq_or_the_writer_for_ever_is_left_out() {
     assert_eq!(theorems["theorems"], serde_json::json!(["sparse", "small"]), "{theorems}");
     assert_eq!(theorems["left_out"].as_array().map(Vec::len), Some(3), "{theorems}");
     if is_there() {
-        for file in ["Lie.v", "Check.v", "Point.v", "large.v"] {
+        for file in LIBRARY.into_iter().chain(["large.v"]) {
             compile(&out, file);
         }
     }
@@ -160,7 +169,7 @@ fn coq_accepts_the_theorems_of_two_papers_and_of_the_regimes_of_the_thesis() {
     arguments.extend(["--coq", &out_text, "--json"]);
     let run = json(&palmistry(&arguments));
     let (mut theorems, mut left_out) = (0, 0);
-    for file in ["Lie.v", "Check.v", "Point.v"] {
+    for file in LIBRARY {
         let text = std::fs::read_to_string(out.join(file)).expect("a file");
         for word in ["Admitted", "admit", "Axiom", "Parameter ", "Hypothesis rules_hold : hold r l."] {
             // one hypothesis of a section, which its lemmas carry
@@ -218,11 +227,8 @@ fn coq_refuses_what_is_made_false_by_one_sign_function_factor_or_index() {
         return;
     }
     let folder = folder();
-    for (name, text) in [
-        ("Lie.v", include_str!("../../proofs/coq/Lie.v")),
-        ("Check.v", include_str!("../../proofs/coq/Check.v")),
-        ("Point.v", include_str!("../../proofs/coq/Point.v")),
-    ] {
+    for name in LIBRARY {
+        let text = std::fs::read_to_string(format!("proofs/coq/{name}")).expect("a file of the library");
         write(&folder, name, text);
         compile(folder.path(), name);
     }
@@ -270,4 +276,104 @@ fn coq_refuses_what_is_made_false_by_one_sign_function_factor_or_index() {
         compile(folder.path(), &file);
     }
     assert!(refused >= 200, "{refused} mutants were refused");
+}
+
+/// The page of a paper leads to the theorems beside it.
+#[test]
+fn theorems_of_a_paper_stand_beside_its_page() {
+    let folder = folder();
+    let out = folder.path().join("report");
+    let run = json(&palmistry(&[
+        "verify",
+        "proofs/hermann1977",
+        "--out",
+        &out.to_string_lossy(),
+        "--coq",
+        "--no-times",
+        "--json",
+    ]));
+    let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
+    let mut led = 0;
+    for file in run["theorems"]["files"].as_array().expect("a list") {
+        let name = file["coq"].as_str().expect("a name");
+        let text = std::fs::read_to_string(out.join("coq").join(name)).expect("a file");
+        let whole = ["theorems", "reached"].map(|list| file[list].as_array().expect("a list").len());
+        assert!(text.matches("\nTheorem claim_").count() >= whole.iter().sum());
+        led += page.matches(&format!("href=coq/{name} ")).count();
+    }
+    assert!(led > 10, "{led} claims lead to theorems");
+    assert!(out.join("coq/Rank.v").exists());
+    // without being asked none is written, and the page leads nowhere
+    let out = folder.path().join("plain");
+    palmistry(&["verify", "proofs/hermann1977", "--out", &out.to_string_lossy(), "--no-times"]);
+    assert!(!out.join("coq").exists());
+    assert!(!std::fs::read_to_string(out.join("index.html")).expect("a page").contains("coq/"));
+}
+
+/// A theorem on a rank with another number, shown by one row more or less: a row twice, and one left out.
+fn rank_mutants(theorem: &str) -> Option<[String; 2]> {
+    let (said, proof) = theorem.split_once(".\nProof. ")?;
+    let (said, number) = said.rsplit_once(' ')?;
+    // of no row there is none to be repeated
+    let number: usize = number.parse().ok().filter(|number| *number > 0)?;
+    let (shown, rows) = proof.strip_suffix("]%nat. Qed.\n")?.rsplit_once(" [")?;
+    // the separators of words stand outside of their brackets
+    let mut all: Vec<String> = Vec::new();
+    for piece in rows.split("; ") {
+        match all.last_mut() {
+            Some(last) if last.contains('(') && !last.ends_with(')') => *last = format!("{last}; {piece}"),
+            _ => all.push(piece.to_owned()),
+        }
+    }
+    let written = |number: usize, rows: &[String]| {
+        format!("{said} {number}.\nProof. {shown} [{}]%nat. Fail Qed. Abort.\n", rows.join("; "))
+    };
+    let more = [&all[..], &all[..1]].concat();
+    Some([written(number + 1, &more), written(number - 1, &all[..all.len() - 1])])
+}
+
+#[test]
+fn coq_refuses_ranks_that_are_larger_or_smaller() {
+    if !is_there() {
+        return;
+    }
+    let folder = folder();
+    let out = folder.path().join("theorems");
+    let run = palmistry(&[
+        "prove",
+        "proofs/martinelli2005",
+        "proofs/koteich2015",
+        "proofs/moll2002/same_rate.proof",
+        "--coq",
+        &out.to_string_lossy(),
+        "--json",
+    ]);
+    for file in LIBRARY {
+        compile(&out, file);
+    }
+    let mut refused = 0;
+    for file in json(&run)["theorems"]["files"].as_array().expect("a list") {
+        let name = file["coq"].as_str().expect("a name");
+        let text = std::fs::read_to_string(out.join(name)).expect("a file");
+        let mut changed = String::new();
+        for part in text.split_inclusive("Qed.\n") {
+            let rank = part.contains("rank_at ").then(|| rank_mutants(part)).flatten();
+            match rank {
+                // that fewer are reached is true, where nothing is said of more
+                Some([more, _]) if part.contains("_reaches ") => {
+                    changed.push_str(&more);
+                    refused += 1;
+                }
+                Some([more, fewer]) => {
+                    changed.push_str(&more);
+                    changed.push_str(&fewer);
+                    refused += 2;
+                }
+                None => changed.push_str(part),
+            }
+        }
+        std::fs::write(out.join(name), changed).expect("written");
+        compile(&out, name);
+    }
+    assert!(refused >= 60, "{refused} ranks were refused");
 }

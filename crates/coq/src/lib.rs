@@ -10,7 +10,9 @@
 
 mod definitions;
 mod foreseen;
+mod identity_theorem;
 mod names;
+mod of_claim;
 mod place;
 mod printer;
 mod rank;

@@ -295,7 +295,9 @@ impl Values<'_> {
             Node::Div(_, below) => self.of(below).is_some_and(|value| !value.is_zero()),
             Node::Power(base, ..0) => self.of(base).is_some_and(|value| !value.is_zero()),
             Node::Apply(Function::Sin | Function::Cos | Function::Exp | Function::Atan, _) => true,
-            Node::Apply(Function::Sqrt | Function::Log, of) => self.of(of).is_some_and(|value| value > RBig::ZERO),
+            Node::Apply(Function::Sqrt | Function::Log, of) => {
+                self.of(of).is_some_and(|value| value > RBig::ZERO)
+            }
             Node::Apply(..) => false,
             _ => true,
         };

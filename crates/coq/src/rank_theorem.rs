@@ -1,12 +1,12 @@
 //! Claims on ranks as theorems: that a rank is reached at a state, and that there are no more rows or columns.
 
 use crate::names::in_comment;
+use crate::of_claim::{
+    OfClaim, Theorem, as_argument, conditions_in, entries, is_solved, refuse, under, uses_with,
+};
 use crate::place::State;
 use crate::printer::{Kind, Reason};
 use crate::rank::{of_codistribution, of_matrix};
-use crate::theorem::{
-    OfClaim, Theorem, as_argument, conditions_in, entries, is_solved, refuse, under, uses_with,
-};
 use dashu::rational::RBig;
 use palmistry_lang::{Statement, Value};
 use palmistry_math::expression::syntax::{Equation, Expr, ExprKind, Relation};
@@ -112,7 +112,7 @@ impl OfClaim<'_> {
         let all: Vec<Vec<NodeId>> = all.chunks(columns).map(<[NodeId]>::to_vec).collect();
         let named = self.variables(&uses);
         let (state, places) = of_matrix(self.scratch, &compared, &all, wanted, &named)?;
-        let by = listed(places.iter().map(ToString::to_string), "nat");
+        let by = format!("[{}]", places.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "));
         Ok(Shown { of: printed.argument(), most: rows.min(columns), state, by, uses })
     }
 
@@ -170,16 +170,8 @@ impl OfClaim<'_> {
             let along = word.fields.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
             format!("([{along}], {})", word.output)
         };
-        let by = listed(words.iter().map(word), "word");
+        let by = format!("[{}]", words.iter().map(word).collect::<Vec<_>>().join("; "));
         let of = format!("[{}] [{}] [{}]", idents.join("; "), outputs.join("; "), columns.join("; "));
         Ok(Shown { of, most: columns.len(), state, by, uses })
-    }
-}
-
-/// A list, which has to be told of what it is where it is empty.
-fn listed(items: impl Iterator<Item = String>, of: &str) -> String {
-    match items.collect::<Vec<_>>().join("; ") {
-        none if none.is_empty() => format!("(@nil {of})"),
-        some => format!("[{some}]"),
     }
 }

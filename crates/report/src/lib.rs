@@ -60,7 +60,7 @@ pub use motion::{Observed, modes_json, modes_text, observe_json, observe_page, o
 pub use motion::{stream_end_json, stream_end_text, stream_json, stream_text};
 pub use notebook::{claims_html, rank_html};
 pub use object::{claims_json, read_error_json, versioned};
-pub use page::{drops_page, findings_json, findings_text, page};
+pub use page::{TheoremAddresses, drops_page, findings_json, findings_text, page, page_with};
 #[doc(hidden)]
 pub use page::{forget_seconds, forget_times};
 #[doc(hidden)]

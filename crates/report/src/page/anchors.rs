@@ -12,7 +12,12 @@ pub(super) struct Anchors {
     claims: BTreeMap<(usize, String), String>,
     /// The line of a claim in its file, counted from one.
     lines: BTreeMap<(usize, String), usize>,
+    /// Where the theorem of a claim is written.
+    theorems: BTreeMap<(usize, String), String>,
 }
+
+/// The addresses of theorems, by the file and the id of the claim, as seen from the page.
+pub type TheoremAddresses = BTreeMap<(String, String), String>;
 
 /// A text without what has a meaning in addresses.
 fn plain(text: &str) -> String {
@@ -38,9 +43,14 @@ fn unique(wish: String, taken: &mut BTreeSet<String>) -> String {
 
 impl Anchors {
     /// The names of everything in some files. `reserved` are names that the page has given already.
-    pub fn new(files: &[FileFindings], reserved: &[&str]) -> Anchors {
+    pub fn new(files: &[FileFindings], reserved: &[&str], theorems: &TheoremAddresses) -> Anchors {
         let mut taken: BTreeSet<String> = reserved.iter().map(|name| (*name).to_owned()).collect();
-        let mut anchors = Anchors { files: Vec::new(), claims: BTreeMap::new(), lines: BTreeMap::new() };
+        let mut anchors = Anchors {
+            files: Vec::new(),
+            claims: BTreeMap::new(),
+            lines: BTreeMap::new(),
+            theorems: BTreeMap::new(),
+        };
         for file in files {
             anchors.files.push(unique(plain(stem(&file.system.name)), &mut taken));
         }
@@ -59,6 +69,9 @@ impl Anchors {
                 let before = file.system.source.get(..claim.span.start).unwrap_or_default();
                 let line = 1 + before.bytes().filter(|byte| *byte == b'\n').count();
                 anchors.lines.insert((place, claim.id.clone()), line);
+                if let Some(address) = theorems.get(&(file.system.name.clone(), claim.id.clone())) {
+                    anchors.theorems.insert((place, claim.id.clone()), address.clone());
+                }
             }
         }
         anchors
@@ -77,6 +90,11 @@ impl Anchors {
     /// The line on which a claim begins.
     pub fn line(&self, file: usize, id: &str) -> Option<usize> {
         self.lines.get(&(file, id.to_owned())).copied()
+    }
+
+    /// Where the theorem of a claim is written, if there is one.
+    pub fn theorem(&self, file: usize, id: &str) -> Option<&str> {
+        self.theorems.get(&(file, id.to_owned())).map(String::as_str)
     }
 
     /// The name of a line: in a name of the others there is no colon.

@@ -24,6 +24,9 @@ pub(super) fn entry(claim: Placed<'_>, anchors: &Anchors, engines: &Engines<'_>)
                 @if let Some(line) = anchors.line(file, &outcome.id) {
                     a href=(format!("#{}", Anchors::line_name(file, line))) { (line) }
                 }
+                @if let Some(theorem) = anchors.theorem(file, &outcome.id) {
+                    " " a href=(theorem) title="as a theorem that Coq checks" { "Coq" }
+                }
             }
             @match outcome.fault {
                 Some(fault) => (faulty(outcome, fault, engines)),

@@ -12,6 +12,7 @@ mod source;
 mod unknowns;
 pub(super) mod whole;
 
+pub use anchors::TheoremAddresses;
 pub use drops::drops_page;
 pub use findings::{findings_json, findings_text, forget_seconds, forget_times};
-pub use whole::page;
+pub use whole::{page, page_with};

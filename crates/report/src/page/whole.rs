@@ -1,6 +1,6 @@
 //! The page of a paper, put together from its parts: one file, with its pictures and nothing from elsewhere.
 
-use super::anchors::{Anchors, placed, stem};
+use super::anchors::{Anchors, TheoremAddresses, placed, stem};
 use super::claims::{all_claims, equations, faults, tally};
 use super::entry::{ENGINES, name};
 use super::extremes::{extremes, extremes_heading};
@@ -38,6 +38,11 @@ const SECTIONS: [&str; 14] = [
 
 /// The page as HTML.
 pub fn page(found: &Findings) -> String {
+    page_with(found, &TheoremAddresses::new())
+}
+
+/// The page, on which claims lead to their theorems.
+pub fn page_with(found: &Findings, theorems: &TheoremAddresses) -> String {
     let names: Vec<String> = (0..found.files.len()).map(|place| format!("file{place}")).collect();
     let engines: Vec<String> = (0..ENGINES).map(name).collect();
     let reserved: Vec<&str> = SECTIONS
@@ -45,7 +50,7 @@ pub fn page(found: &Findings) -> String {
         .chain(["shown"])
         .chain(names.iter().chain(&engines).map(String::as_str))
         .collect();
-    let (anchors, claims) = (Anchors::new(&found.files, &reserved), placed(&found.files));
+    let (anchors, claims) = (Anchors::new(&found.files, &reserved, theorems), placed(&found.files));
     let numbering = &found.paper.numbering;
     let experiments: Vec<Observed<'_>> =
         found.experiments.iter().map(|(experiment, answers)| Observed::of(experiment, answers)).collect();
