@@ -307,3 +307,34 @@ fn ties_that_are_not_understood_decide_nothing() {
         assert!(System::parse("s", text, Path::new("")).is_err(), "{text}");
     }
 }
+
+/// With `x' = u` the second derivative of `x` is `u'`, whether or not the file writes it: what is said of it does not hang on other
+/// claims. Through definitions, fields of other roles, brackets and whole rows; a signal that drives nothing is not derived.
+#[test]
+fn a_lie_derivative_goes_on_to_the_derivatives_of_known_signals() {
+    let head = "system \"s\" state x, v known u(t), w(t) drift f x' = v v' = u*x output x field g x' = u v' = 0 \
+                let first = L(f, x) let second = L(f, first)";
+    let verdict = |claim: &str| {
+        let outcomes = prove(&system(&format!("{head} claim 1: {claim}")));
+        outcomes[0].word().to_owned()
+    };
+    // no derivative is written
+    assert_eq!(verdict("L(f, f, x) = u*x"), "proved");
+    assert_eq!(verdict("L(f, f, f, x) = u*v"), "refuted");
+    assert_eq!(verdict("L(f, second) = u*v"), "refuted");
+    assert_eq!(verdict("L(f, f, second) = u^2*x"), "refuted");
+    assert_eq!(verdict("L(f, g, x) = 0"), "refuted");
+    assert_eq!(verdict("L(bracket(f, g), x) = -u*x"), "refuted");
+    assert_eq!(verdict("L(f, [x; v]) = [v; u*x]"), "proved");
+    // and where it is
+    assert_eq!(verdict("L(f, f, f, x) = u*v + u'*x"), "proved");
+    assert_eq!(verdict("L(f, f, second) = u^2*x + 2*u'*v + u''*x"), "proved");
+    assert_eq!(verdict("L(f, g, x) = u'"), "proved");
+    let found = system(&format!("{head} claim 1: L(f, f, second) = 0"));
+    let known = found.known_names();
+    assert_eq!(known, ["u", "u'", "u''", "w"]);
+    // so far and no further
+    let deep = format!("{head} claim 1: L({}x) = 0", "f, ".repeat(40));
+    let refused = System::parse("test.proof", &deep, Path::new("")).unwrap_err().to_string();
+    assert!(refused.contains("or comes to it by Lie derivatives; the highest is 30"), "{refused}");
+}

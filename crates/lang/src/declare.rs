@@ -168,12 +168,18 @@ impl System {
     ) -> Result<(), Problem> {
         let name = &declared.name;
         self.refuse_taken(name)?;
-        let used = derivatives.highest(&name.text);
+        let used = match knowledge {
+            Knowledge::Known => derivatives.reached(&name.text),
+            Knowledge::Unknown => derivatives.highest(&name.text),
+        };
         let refuse = |span: &Span, message: String| {
             Problem::new(span, message, "this signal").help("name the derivative as a state of its own")
         };
         if used > HIGHEST_DERIVATIVE {
-            let message = format!("the file mentions derivative {used} of '{}'", name.text);
+            let message = format!(
+                "the file mentions derivative {used} of '{}', or comes to it by Lie derivatives",
+                name.text
+            );
             return Err(refuse(&name.span, format!("{message}; the highest is {HIGHEST_DERIVATIVE}")));
         }
         let order = match &declared.order {

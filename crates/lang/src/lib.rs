@@ -17,6 +17,7 @@ mod dimension;
 mod discrete;
 mod domain;
 mod drawn;
+mod driven;
 mod elaborate;
 mod enter_field;
 mod entries;

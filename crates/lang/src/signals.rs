@@ -4,6 +4,7 @@
 //! The words that begin these entries are names too, where nothing follows that makes an entry of them.
 
 use super::dimension::{DeclaredDimension, DeclaredTarget, annotation};
+use super::driven::Driven;
 use super::syntax::{Item, Statement};
 use super::views::View;
 use palmistry_math::expression::parse::{Read, Text, keyword, loops, name, repeat, sign, stop, sum, target};
@@ -173,33 +174,41 @@ pub(super) fn entry(input: &mut Text<'_>) -> Read<Item> {
 
 /// The name of a signal of which a name is a derivative, and the how manieth: `u''@2` is the second one of `u` in the
 /// second experiment.
-fn derivative(name: &str) -> Option<(&str, usize)> {
+pub(super) fn derivative(name: &str) -> Option<(&str, usize)> {
     let base = name.trim_end_matches('\'');
     let order = name.len() - base.len();
     let signal = base.split('@').next().unwrap_or(base);
     (order > 0).then_some((signal, order))
 }
 
-/// The highest derivatives that a file mentions, by the names of what is derived.
-#[derive(Debug, Default)]
-pub(super) struct Derivatives(HashMap<String, usize>);
+/// The highest derivatives that a file mentions, by the names of what is derived; and those that known signals are led to.
+#[derive(Default)]
+pub(super) struct Derivatives {
+    mentioned: HashMap<String, usize>,
+    driven: Driven,
+}
 
 impl Derivatives {
     /// Of all entries of a file.
     pub fn of(items: &[Item]) -> Derivatives {
-        let mut found = Derivatives::default();
+        let mut found = Derivatives { driven: Driven::of(items), ..Derivatives::default() };
         items.iter().for_each(|item| found.item(item));
         found
     }
 
-    /// The highest one of a signal.
+    /// The highest one of a signal that is mentioned.
     pub fn highest(&self, signal: &str) -> usize {
-        self.0.get(signal).copied().unwrap_or(0)
+        self.mentioned.get(signal).copied().unwrap_or(0)
+    }
+
+    /// The highest one of a known signal that is mentioned, or that a Lie derivative along the drift comes to.
+    pub fn reached(&self, signal: &str) -> usize {
+        self.highest(signal).max(self.driven.highest(signal))
     }
 
     fn name(&mut self, name: &str) {
         if let Some((signal, order)) = derivative(name) {
-            let highest = self.0.entry(signal.to_owned()).or_default();
+            let highest = self.mentioned.entry(signal.to_owned()).or_default();
             *highest = order.max(*highest);
         }
     }
