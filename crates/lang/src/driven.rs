@@ -4,52 +4,82 @@ use super::model::Role;
 use super::signals::{Knowledge, derivative};
 use super::syntax::Item;
 use palmistry_math::expression::syntax::{Expr, ExprKind};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::rc::Rc;
 
-/// Of so many signals each is looked at by itself; where there are more, all are derived as far as one of them is.
+/// Of so many signals, and states, each is looked at by itself; where there are more, the others are taken together.
 const MOST_APART: usize = 64;
 
-/// The highest derivatives of signals in an expression, by their places.
-type Orders = Rc<BTreeMap<usize, usize>>;
+/// What an expression holds.
+#[derive(Clone, Default)]
+struct Holds {
+    /// The highest derivatives of signals, by their places.
+    signals: BTreeMap<usize, usize>,
+    /// The places of states.
+    states: BTreeSet<usize>,
+}
+
+type Held = Rc<Holds>;
+
+/// A field: whether it moves signals, and what the rates of states hold.
+#[derive(Clone, Default)]
+struct Moves {
+    signals: bool,
+    rates: BTreeMap<usize, Held>,
+    /// The rates of states that are not known one by one.
+    others: Held,
+}
 
 /// What is known of the entries above.
 #[derive(Default)]
 pub(super) struct Driven {
     /// Known signals.
-    places: HashMap<String, usize>,
-    definitions: HashMap<String, Orders>,
-    /// Fields, and whether they move signals.
-    fields: HashMap<String, (bool, Orders)>,
+    signals: HashMap<String, usize>,
+    states: HashMap<String, usize>,
+    definitions: HashMap<String, Held>,
+    fields: HashMap<String, Moves>,
     /// The highest derivatives that anything holds.
     highest: BTreeMap<usize, usize>,
-    nothing: Orders,
+    nothing: Held,
     /// What an imported name may hold.
-    anything: Orders,
+    anything: Held,
 }
 
 impl Driven {
     /// Of the entries of a file, in their order.
     pub fn of(items: &[Item]) -> Driven {
         let mut found = Driven::default();
-        let known = items.iter().filter_map(|item| match item {
-            Item::Signals { knowledge: Knowledge::Known, list } => Some(list),
-            _ => None,
-        });
-        for signal in known.flatten() {
-            let place = found.places.len().min(MOST_APART);
-            found.places.insert(signal.name.text.clone(), place);
-        }
-        // in steps a signal goes to its next value, as far as is asked
         let is_discrete = items.iter().any(|item| matches!(item, Item::Field { is_map: true, .. }));
-        if found.places.is_empty() || is_discrete {
-            found.places.clear();
+        if is_discrete {
+            // in steps a signal goes to its next value, as far as is asked
             return found;
         }
-        found.anything = Rc::new(found.places.values().map(|place| (*place, 0)).collect());
+        let enter = |places: &mut HashMap<String, usize>, name: &str| {
+            let place = places.len().min(MOST_APART);
+            places.entry(name.to_owned()).or_insert(place);
+        };
+        for item in items {
+            match item {
+                Item::Signals { knowledge: Knowledge::Known, list } => {
+                    list.iter().for_each(|one| enter(&mut found.signals, &one.name.text));
+                }
+                // what moves is a state
+                Item::Field { components, .. } => {
+                    components.iter().for_each(|(name, _)| enter(&mut found.states, &name.text));
+                }
+                _ => (),
+            }
+        }
+        if found.signals.is_empty() {
+            return found;
+        }
+        found.anything = Rc::new(Holds {
+            signals: found.signals.values().map(|place| (*place, 0)).collect(),
+            states: found.states.values().copied().collect(),
+        });
         if !items.iter().any(|item| matches!(item, Item::Field { role: Role::Drift, .. })) {
             // the drift that is made for the signals
-            found.fields.insert("signals".to_owned(), (true, found.anything.clone()));
+            found.fields.insert("signals".to_owned(), Moves { signals: true, ..Moves::default() });
         }
         items.iter().for_each(|item| found.item(item));
         found
@@ -57,20 +87,27 @@ impl Driven {
 
     /// The highest derivative of a known signal that anything holds.
     pub fn highest(&self, signal: &str) -> usize {
-        let place = self.places.get(signal);
+        let place = self.signals.get(signal);
         place.and_then(|place| self.highest.get(place)).copied().unwrap_or(0)
     }
 
     fn item(&mut self, item: &Item) {
         match item {
             Item::Let { name, value, .. } => {
-                let orders = self.asked(value);
-                self.definitions.insert(name.text.clone(), orders);
+                let held = self.asked(value);
+                self.definitions.insert(name.text.clone(), held);
             }
             Item::Field { role, name, components, .. } => {
-                let rates = components.iter().map(|(_, rate)| self.asked(rate)).collect::<Vec<_>>();
-                let rates = self.union(rates);
-                self.fields.insert(name.text.clone(), (*role == Role::Drift, rates));
+                let mut moves = Moves { signals: *role == Role::Drift, ..Moves::default() };
+                for (state, rate) in components {
+                    let held = self.asked(rate);
+                    if let Some(place) = self.states.get(&state.text) {
+                        // several are taken together where there are many
+                        let before = moves.rates.get(place).cloned().unwrap_or_default();
+                        moves.rates.insert(*place, self.union(vec![before, held]));
+                    }
+                }
+                self.fields.insert(name.text.clone(), moves);
             }
             Item::Output(list) | Item::Zero(list) => list.iter().for_each(|one| {
                 self.asked(&one.value);
@@ -93,105 +130,108 @@ impl Driven {
         }
     }
 
-    /// The orders of an expression, which count for the file.
-    fn asked(&mut self, expr: &Expr) -> Orders {
-        let orders = self.orders(expr);
-        for (place, order) in orders.iter() {
+    /// What an expression holds, which counts for the file.
+    fn asked(&mut self, expr: &Expr) -> Held {
+        let held = self.held(expr);
+        for (place, order) in &held.signals {
             let highest = self.highest.entry(*place).or_default();
             *highest = (*order).max(*highest);
         }
-        orders
+        held
     }
 
-    fn orders(&self, expr: &Expr) -> Orders {
+    fn held(&self, expr: &Expr) -> Held {
         match &expr.kind {
             ExprKind::Number(_) | ExprKind::Indexed(_) => self.nothing.clone(),
             ExprKind::Name(name) => self.of_name(name),
             ExprKind::Call(function, arguments) if function == "L" && arguments.len() > 1 => {
                 let (last, fields) = arguments.split_last().unwrap_or((expr, &[]));
-                fields.iter().rev().fold(self.orders(last), |orders, field| self.along(field, orders))
+                fields.iter().rev().fold(self.held(last), |held, field| self.along(field, &held))
             }
             ExprKind::Call(function, arguments) if function == "bracket" && arguments.len() > 1 => {
                 // the components of each are derived along the other one
+                let all =
+                    Rc::new(Holds { states: self.states.values().copied().collect(), ..Holds::default() });
                 let (first, second) = (&arguments[0], &arguments[1]);
-                let both = [(first, second), (second, first)];
-                self.union(both.map(|(field, of)| self.along(field, self.rates(of))).to_vec())
+                let both = [[first, second], [second, first]];
+                let twice = both.map(|[last, before]| self.along(last, &self.along(before, &all)));
+                self.union(twice.to_vec())
             }
-            ExprKind::Call(_, arguments) => {
-                self.union(arguments.iter().map(|one| self.orders(one)).collect())
-            }
-            ExprKind::RealPower(base, exponent) => self.union(vec![self.orders(base), self.orders(exponent)]),
+            ExprKind::Call(_, arguments) => self.union(arguments.iter().map(|one| self.held(one)).collect()),
+            ExprKind::RealPower(base, exponent) => self.union(vec![self.held(base), self.held(exponent)]),
             ExprKind::Sum(parts) | ExprKind::Product(parts) => {
-                self.union(parts.iter().map(|(_, part)| self.orders(part)).collect())
+                self.union(parts.iter().map(|(_, part)| self.held(part)).collect())
             }
-            ExprKind::Power(base, _) => self.orders(base),
+            ExprKind::Power(base, _) => self.held(base),
             ExprKind::Matrix(rows) => {
-                self.union(rows.iter().flatten().map(|entry| self.orders(entry)).collect())
+                self.union(rows.iter().flatten().map(|entry| self.held(entry)).collect())
             }
             ExprKind::At(inner, list) => {
-                let values = list.iter().map(|(_, value)| self.orders(value));
-                self.union(std::iter::once(self.orders(inner)).chain(values).collect())
+                let values = list.iter().map(|(_, value)| self.held(value));
+                self.union(std::iter::once(self.held(inner)).chain(values).collect())
             }
         }
     }
 
-    fn of_name(&self, name: &str) -> Orders {
+    fn of_name(&self, name: &str) -> Held {
         let (signal, order) = derivative(name).unwrap_or((name, 0));
         let base = signal.split('@').next().unwrap_or(signal);
-        if let Some(place) = self.places.get(base) {
-            return Rc::new(BTreeMap::from([(*place, order)]));
+        if let Some(place) = self.signals.get(base) {
+            return Rc::new(Holds { signals: BTreeMap::from([(*place, order)]), ..Holds::default() });
+        }
+        if let Some(place) = self.states.get(base) {
+            return Rc::new(Holds { states: BTreeSet::from([*place]), ..Holds::default() });
         }
         match self.definitions.get(base) {
-            Some(orders) => orders.clone(),
+            Some(held) => held.clone(),
             None if name.contains('.') => self.anything.clone(),
             None => self.nothing.clone(),
         }
     }
 
-    /// The orders of the components of a field.
-    fn rates(&self, field: &Expr) -> Orders {
+    /// What the derivative along a field holds: the drift takes signals to their derivatives.
+    fn along(&self, field: &Expr, held: &Held) -> Held {
         match &field.kind {
             ExprKind::Name(name) => match self.fields.get(name.split('@').next().unwrap_or(name)) {
-                Some((_, rates)) => rates.clone(),
-                None if name.contains('.') => self.anything.clone(),
-                None => self.nothing.clone(),
+                Some(moves) => self.derived(moves, held),
+                None if name.contains('.') => {
+                    let moves = Moves { signals: true, others: self.anything.clone(), ..Moves::default() };
+                    self.derived(&moves, held)
+                }
+                // a field that drives a signal
+                None => held.clone(),
             },
-            _ => self.orders(field),
+            // a bracket: along both, in whichever order
+            ExprKind::Call(_, fields) if fields.len() > 1 => {
+                let both = [[&fields[0], &fields[1]], [&fields[1], &fields[0]]];
+                let twice = both.map(|[last, before]| self.along(last, &self.along(before, held)));
+                self.union(twice.to_vec())
+            }
+            _ => held.clone(),
         }
     }
 
-    /// The orders of what is derived along a field: the drift takes signals to their derivatives.
-    fn along(&self, field: &Expr, orders: Orders) -> Orders {
-        let moves = |name: &str| {
-            let known = self.fields.get(name.split('@').next().unwrap_or(name));
-            known.map_or(name.contains('.'), |(moves, _)| *moves)
-        };
-        let steps = match &field.kind {
-            ExprKind::Name(name) => usize::from(moves(name)),
-            ExprKind::Call(_, fields) => {
-                let moving = |field: &&Expr| matches!(&field.kind, ExprKind::Name(name) if moves(name));
-                fields.iter().take(2).filter(moving).count()
-            }
-            _ => 0,
-        };
-        let raised = match steps {
-            0 => orders,
-            _ => Rc::new(orders.iter().map(|(place, order)| (*place, order + steps)).collect()),
-        };
-        self.union(vec![raised, self.rates(field)])
+    fn derived(&self, moves: &Moves, held: &Held) -> Held {
+        let mut raised = Holds::clone(held);
+        if moves.signals {
+            raised.signals.values_mut().for_each(|order| *order += 1);
+        }
+        let rates = held.states.iter().map(|place| moves.rates.get(place).unwrap_or(&moves.others).clone());
+        self.union(std::iter::once(Rc::new(raised)).chain(rates).collect())
     }
 
-    fn union(&self, all: Vec<Orders>) -> Orders {
-        let mut whole: Option<Orders> = None;
-        for orders in all.into_iter().filter(|orders| !orders.is_empty()) {
+    fn union(&self, all: Vec<Held>) -> Held {
+        let mut whole: Option<Held> = None;
+        for held in all.into_iter().filter(|held| !held.signals.is_empty() || !held.states.is_empty()) {
             whole = Some(match whole {
-                None => orders,
+                None => held,
                 Some(mut whole) => {
                     let into = Rc::make_mut(&mut whole);
-                    for (place, order) in orders.iter() {
-                        let highest = into.entry(*place).or_default();
+                    for (place, order) in &held.signals {
+                        let highest = into.signals.entry(*place).or_default();
                         *highest = (*order).max(*highest);
                     }
+                    into.states.extend(&held.states);
                     whole
                 }
             });
