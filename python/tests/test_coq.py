@@ -155,7 +155,8 @@ class Coq(unittest.TestCase):
                     continue
                 before, after = changes[number % len(changes)]
                 at = text.find(before, text.index(" : ", begin), end)
-                if at < 0:
+                # a half turn forwards is one backwards
+                if at < 0 or text.startswith(" + Pi", at):
                     continue
                 changed = text[:at] + after + text[at + len(before):]
                 system = self.system(file)
@@ -166,8 +167,6 @@ class Coq(unittest.TestCase):
                     noticed += 1  # it is no term any more
                     continue
                 noticed += bool(wrong or left_out)
-                if not (wrong or left_out):
-                    print(file["file"], text[begin:end], before, after)
         self.assertGreater(tried, 60)
         self.assertEqual(noticed, tried)
 
