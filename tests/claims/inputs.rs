@@ -333,6 +333,18 @@ fn a_lie_derivative_goes_on_to_the_derivatives_of_known_signals() {
     let found = system(&format!("{head} claim 1: L(f, f, second) = 0"));
     let known = found.known_names();
     assert_eq!(known, ["u", "u'", "u''", "w"]);
+    // assumptions and what states keep away from count as well
+    for entry in ["assume L(f, f, f, x) > 0", "sample avoid L(f, f, f, x)"] {
+        assert_eq!(system(&format!("{head} {entry}")).known_names(), ["u", "u'", "w"], "{entry}");
+    }
+    // what is asked from outside does not take the last derivative for a constant
+    let eval = |expression: &str| {
+        let mut bare = system("system \"s\" state x known u(t) drift f x' = u output x");
+        bare.evaluate_text_guarded(expression).map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert!(eval("L(f, x)").is_ok());
+    let refused = eval("L(f, f, x)").unwrap_err();
+    assert!(refused.contains("the derivative of 'u' is u', which the file does not come to"), "{refused}");
     // so far and no further
     let deep = format!("{head} claim 1: L({}x) = 0", "f, ".repeat(40));
     let refused = System::parse("test.proof", &deep, Path::new("")).unwrap_err().to_string();

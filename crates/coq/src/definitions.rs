@@ -4,7 +4,7 @@ use crate::names::{Names, in_comment};
 use crate::printer::{Kind, Known, Printer, Reason, kind_of};
 use dashu::rational::RBig;
 use palmistry_lang::{Entry, Field, System, Time, entries_of};
-use palmistry_math::expression::syntax::{Expr, Name};
+use palmistry_math::expression::syntax::{Expr, ExprKind, Name};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -25,6 +25,8 @@ pub(crate) struct Definitions {
     pub values: BTreeMap<String, Result<Known, Reason>>,
     /// Fields, likewise.
     pub fields: BTreeMap<String, Result<String, Reason>>,
+    /// How often values are put into values, by the whole names of definitions.
+    pub puts: BTreeMap<String, usize>,
     /// The outputs of the outermost file: terms, and the names that they mention.
     pub outputs: Vec<Result<(String, BTreeSet<String>), Reason>>,
     files: HashMap<PathBuf, Option<Rc<System>>>,
@@ -51,6 +53,7 @@ impl Definitions {
             match entry {
                 Entry::Definition { name, value } => {
                     let found = self.definition(system, prefix, &name, &value, names);
+                    self.puts.insert(format!("{prefix}{name}"), self.puts_in(prefix, &value));
                     self.values.insert(format!("{prefix}{name}"), found);
                 }
                 Entry::Field { name, components, is_map } => {
@@ -67,6 +70,26 @@ impl Definitions {
                 }
                 Entry::Output { .. } => (),
             }
+        }
+    }
+
+    /// How often values are put into values in an expression, `e at {x = (y at {z = 0})} at {z = w}`: the library writes each of them
+    /// out, so that terms grow with each as a product does. What the graph folds on the way is not seen from its size.
+    pub fn puts_in(&self, prefix: &str, expr: &Expr) -> usize {
+        let of = |part: &Expr| self.puts_in(prefix, part);
+        match &expr.kind {
+            ExprKind::Name(name) => self.puts.get(&format!("{prefix}{name}")).copied().unwrap_or(0),
+            ExprKind::At(inner, list) => {
+                1 + of(inner).max(list.iter().map(|(_, value)| of(value)).max().unwrap_or(0))
+            }
+            ExprKind::Call(_, arguments) => arguments.iter().map(of).max().unwrap_or(0),
+            ExprKind::Sum(parts) | ExprKind::Product(parts) => {
+                parts.iter().map(|(_, part)| of(part)).max().unwrap_or(0)
+            }
+            ExprKind::Matrix(rows) => rows.iter().flatten().map(of).max().unwrap_or(0),
+            ExprKind::Power(base, _) => of(base),
+            ExprKind::RealPower(base, exponent) => of(base).max(of(exponent)),
+            ExprKind::Number(_) | ExprKind::Indexed(_) => 0,
         }
     }
 

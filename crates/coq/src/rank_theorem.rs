@@ -13,6 +13,9 @@ use palmistry_math::expression::syntax::{Equation, Expr, ExprKind, Relation};
 use palmistry_math::expression::{NodeId, Symbol};
 use std::collections::BTreeSet;
 
+/// Values are put into values no more often: each time may take as much longer as a term is long.
+const MOST_PUTS: usize = 4;
+
 /// The rank that is asked for, and the number that it is said to be.
 pub(crate) struct RankAsked<'a> {
     /// Of a matrix, or of the observability codistribution.
@@ -100,6 +103,9 @@ impl OfClaim<'_> {
     }
 
     fn of_matrix(&mut self, matrix: &Expr, conditions: &[Equation], wanted: usize) -> Result<Shown, Reason> {
+        if self.definitions.puts_in("", matrix) > MOST_PUTS {
+            return Err("values are put into values more often than the library should write out".to_owned());
+        }
         let mut printer = self.definitions.outermost(self.system, self.names);
         let printed = printer.print(matrix)?.as_matrix();
         let uses = printer.used;

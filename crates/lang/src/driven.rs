@@ -112,6 +112,13 @@ impl Driven {
             Item::Output(list) | Item::Zero(list) => list.iter().for_each(|one| {
                 self.asked(&one.value);
             }),
+            Item::Assume(equations) => equations.iter().for_each(|equation| {
+                self.asked(&equation.left);
+                self.asked(&equation.right);
+            }),
+            Item::Sample { avoid, .. } => avoid.iter().for_each(|expr| {
+                self.asked(expr);
+            }),
             Item::Claim(claim) => {
                 for statement in claim.body.statements() {
                     for equation in statement.all_equations() {

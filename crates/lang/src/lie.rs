@@ -7,7 +7,8 @@
 
 use super::elaborate::{LARGEST_GRAPH, Wanted};
 use super::error::Problem;
-use super::model::{Matrix, System, Value};
+use super::model::{Matrix, Role, System, Value};
+use super::unknowns::next_derivative;
 use palmistry_math::expression::syntax::{Expr, ExprKind, Span};
 use palmistry_math::expression::{Derivation, Guard, NodeId, Symbol};
 use std::collections::{BTreeMap, BTreeSet};
@@ -45,6 +46,7 @@ impl System {
         }
         let mut value = self.elaborate(last)?;
         for field in fields.iter().rev() {
+            self.refuse_the_last_derivative(field, &value, span)?;
             value = match &field.kind {
                 ExprKind::Name(name) => self.along_named(name, value, (&field.span, &last.span))?,
                 _ => {
@@ -55,6 +57,40 @@ impl System {
             self.refuse_growth(span)?;
         }
         Ok(value)
+    }
+
+    /// The drift leads a known signal to its next derivative, and the last one that the file comes to has none: it would count as constant.
+    /// What a file says itself never meets this (`driven.rs`); what is asked of it from outside may.
+    fn refuse_the_last_derivative(&self, field: &Expr, value: &Value, span: &Span) -> Result<(), Problem> {
+        let is_drift = |expr: &Expr| match &expr.kind {
+            ExprKind::Name(name) => self.field(name).is_some_and(|field| field.role == Role::Drift),
+            _ => false,
+        };
+        let moves = match &field.kind {
+            ExprKind::Call(_, fields) => fields.iter().take(2).any(is_drift),
+            _ => is_drift(field),
+        };
+        let nodes = match value {
+            Value::Scalar(node) if moves => vec![*node],
+            Value::Matrix(matrix) if moves => matrix.entries.clone(),
+            _ => return Ok(()),
+        };
+        let known = self.coordinates.signals.iter().filter(|signal| signal.is_known);
+        let last: Vec<Symbol> = known.filter_map(|signal| signal.chain.last().copied()).collect();
+        if last.is_empty() {
+            return Ok(());
+        }
+        match self.graph.symbols_of(nodes).into_iter().find(|symbol| last.contains(symbol)) {
+            None => Ok(()),
+            Some(symbol) => {
+                let name = self.symbol_name(symbol);
+                let next = next_derivative(name);
+                let message =
+                    format!("the derivative of '{name}' is {next}, which the file does not come to");
+                Err(Problem::new(span, message, "this holds it")
+                    .help(format!("name {next} in the file, as in: let further = {next}")))
+            }
+        }
     }
 
     /// The same along maps: what is after the last step has to exist there, and each step at the state before it.
