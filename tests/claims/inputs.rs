@@ -74,6 +74,25 @@ fn unknown_signals_have_an_order() {
         assert_eq!(found.unknown_kind(w), Some(UnknownKind::Signal));
     }
     has_rank("system \"s\" state x, z unknown w(t) order 1 drift f x' = 0 z' = w output x + z", 3);
+    // no statement rests on an order that the file does not say
+    let claimed = |order: &str, claim: &str| {
+        let text =
+            format!("system \"s\" state x unknown w(t) {order} drift f x' = w output x claim 1: {claim}");
+        System::parse("test.proof", &text, Path::new(""))
+    };
+    let refused = claimed("", "L(f, f, f, x) = 0").unwrap_err().to_string();
+    assert!(
+        refused.contains("the derivative of 'w'' is w'', and the file does not say that it is zero"),
+        "{refused}"
+    );
+    for (order, claim, word) in [
+        ("order 1", "L(f, f, f, x) = 0", "proved"),
+        ("", "L(f, f, x) = w'", "proved"),
+        ("", "L(f, f, f, x) = w''", "proved"),
+        ("order 2", "L(f, f, f, x) = 0", "refuted"),
+    ] {
+        assert_eq!(prove(&claimed(order, claim).unwrap())[0].word(), word, "{order} {claim}");
+    }
     // what the file mentions is there without being asked for
     let mentioned = system("system \"s\" state x unknown w(t) drift f x' = w''' output x");
     assert_eq!(mentioned.unknown_count(), 5);

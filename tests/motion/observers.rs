@@ -61,7 +61,7 @@ fn sensitivities_are_those_of_the_closed_form() {
     let question =
         ModelQuestion { followed: ["x", "v", "w"].map(str::to_owned).to_vec(), ..Default::default() };
     let model = Model::new(&system(OSCILLATOR), &question, &signals).unwrap();
-    let flow = ModelFlow { model: &model, signals: &signals, tolerance: 1e-12, quick: CAREFUL };
+    let flow = ModelFlow { model: &model, signals: &signals, tolerance: 1e-12, stride: Stride::BySample };
     let samples = flow.follow(&truth, &[0, 1, 2], signals.times(), Order::Second).unwrap();
     for sample in samples {
         let (x, slopes, bends) = oscillator(sample.time, truth);
@@ -89,7 +89,7 @@ fn an_input_field_drives_by_its_signal() {
         inputs: vec![("g".to_owned(), "u".to_owned())],
     };
     let model = Model::new(&system(OSCILLATOR), &question, &signals).unwrap();
-    let flow = ModelFlow { model: &model, signals: &signals, tolerance: 1e-12, quick: CAREFUL };
+    let flow = ModelFlow { model: &model, signals: &signals, tolerance: 1e-12, stride: Stride::BySample };
     for sample in flow.follow(&[-1.0, 0.0], &[], signals.times(), Order::Value).unwrap() {
         assert!((sample.outputs[0] + (2.0 * sample.time).cos()).abs() < 1e-10, "at {}", sample.time);
     }

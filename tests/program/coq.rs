@@ -62,6 +62,7 @@ claim 2.rank: rank = 3
 claim 2.seen: rank([d(phi); d(L(f, phi))]) = 2
 claim 2.pieces: rank = 3 where sin(phi) = 0
 claim 2.rows: rank([omega, k; 2*omega, 2*k]) = 1
+claim 2.none: rank([0*omega, 0*k]) = 0
 claim 2.less expect refuted: rank = 2
 claim 2.wrong expect refuted: L(f, phi) = 2*omega
 claim 2.circle: omega*cos(phi)^2 = omega where sin(phi) = 0
@@ -82,7 +83,9 @@ claim 2.laws: exp(by)*exp(omega)*log(exp(k)) = k*exp(by + omega)
         .iter()
         .map(|one| format!("{}: {}", one["id"].as_str().unwrap_or(""), one["reason"].as_str().unwrap_or("")))
         .collect();
-    assert_eq!(reasons.len(), 2, "{reasons:?}");
+    // of nothing nothing is shown
+    assert!(reasons.contains(&"2.none: a rank of zero, which no row reaches".to_owned()), "{reasons:?}");
+    assert_eq!(reasons.len(), 3, "{reasons:?}");
     assert_eq!(theorems["refuted"], serde_json::json!(["2.less", "2.wrong"]));
     let text = std::fs::read_to_string(out.join("swing.v")).expect("a file");
     assert!(

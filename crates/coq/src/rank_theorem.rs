@@ -84,6 +84,9 @@ impl OfClaim<'_> {
         // a set that comes in pieces may have a larger rank on one of them than on another
         let is_one_piece = conditions.iter().all(|condition| is_solved(self.system, condition));
         let is_greatest = wanted == shown.most;
+        if wanted == 0 && !is_greatest {
+            return Err("a rank of zero, which no row reaches".to_owned());
+        }
         let rank = if asked.matrix.is_some() { "rank" } else { "observability_rank" };
         let said = if is_greatest { format!("greatest_{rank}") } else { format!("{rank}_reaches") };
         let name = match (more, is_greatest && is_one_piece) {

@@ -211,7 +211,8 @@ impl System {
             if is_known {
                 self.known.extend(&links);
             }
-            self.coordinates.signals.push(Signal { is_known, chain: links, span: name.span.clone() });
+            let (has_order, span) = (declared.order.is_some(), name.span.clone());
+            self.coordinates.signals.push(Signal { is_known, has_order, chain: links, span });
         }
         Ok(())
     }

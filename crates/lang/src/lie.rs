@@ -59,8 +59,9 @@ impl System {
         Ok(value)
     }
 
-    /// The drift leads a known signal to its next derivative, and the last one that the file comes to has none: it would count as constant.
-    /// What a file says itself never meets this (`driven.rs`); what is asked of it from outside may.
+    /// The drift leads a signal to its next derivative, and the last one that the file comes to has none: it would count as constant. Of a
+    /// known signal what a file says itself never meets this (`driven.rs`), and what is asked of it from outside may; of an unknown one that
+    /// is an assumption, which a statement rests on only where the file makes it (`order 1`).
     fn refuse_the_last_derivative(&self, field: &Expr, value: &Value, span: &Span) -> Result<(), Problem> {
         let is_drift = |expr: &Expr| match &expr.kind {
             ExprKind::Name(name) => self.field(name).is_some_and(|field| field.role == Role::Drift),
@@ -75,22 +76,31 @@ impl System {
             Value::Matrix(matrix) if moves => matrix.entries.clone(),
             _ => return Ok(()),
         };
-        let known = self.coordinates.signals.iter().filter(|signal| signal.is_known);
-        let last: Vec<Symbol> = known.filter_map(|signal| signal.chain.last().copied()).collect();
+        let open = self.coordinates.signals.iter().filter(|signal| signal.is_known || !signal.has_order);
+        let last: Vec<(Symbol, bool)> =
+            open.filter_map(|signal| Some((*signal.chain.last()?, signal.is_known))).collect();
         if last.is_empty() {
             return Ok(());
         }
-        match self.graph.symbols_of(nodes).into_iter().find(|symbol| last.contains(symbol)) {
-            None => Ok(()),
-            Some(symbol) => {
-                let name = self.symbol_name(symbol);
-                let next = next_derivative(name);
-                let message =
-                    format!("the derivative of '{name}' is {next}, which the file does not come to");
-                Err(Problem::new(span, message, "this holds it")
-                    .help(format!("name {next} in the file, as in: let further = {next}")))
-            }
-        }
+        let held = self.graph.symbols_of(nodes);
+        let Some((symbol, is_known)) = last.into_iter().find(|(symbol, _)| held.contains(symbol)) else {
+            return Ok(());
+        };
+        let name = self.symbol_name(symbol);
+        let next = next_derivative(name);
+        let (message, help) = match is_known {
+            true => (
+                format!("the derivative of '{name}' is {next}, which the file does not come to"),
+                format!("name {next} in the file, as in: let further = {next}"),
+            ),
+            false => (
+                format!("the derivative of '{name}' is {next}, and the file does not say that it is zero"),
+                format!(
+                    "name {next} in the file, or say how many derivatives the signal has, as in: unknown w(t) order 1"
+                ),
+            ),
+        };
+        Err(Problem::new(span, message, "this holds it").help(help))
     }
 
     /// The same along maps: what is after the last step has to exist there, and each step at the state before it.

@@ -37,6 +37,8 @@ impl UnknownKind {
 #[derive(Clone, Debug)]
 pub(crate) struct Signal {
     pub is_known: bool,
+    /// Whether the file itself says how many derivatives of it there are.
+    pub has_order: bool,
     pub chain: Vec<Symbol>,
     pub span: Span,
 }

@@ -18,6 +18,7 @@ mod calibration;
 mod chi_square;
 mod correlation;
 mod drift;
+mod ending;
 mod errors_in_variables;
 mod filtered;
 mod fit;
@@ -72,7 +73,7 @@ pub use fit::explains;
 pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom, ReadingErrors};
 pub use flow::Lost;
 #[doc(hidden)]
-pub use flow::{CAREFUL, ModelFlow, Order, Sample, advance};
+pub use flow::{ModelFlow, Order, Sample, Stride, advance};
 pub use high_gain::HighGain;
 pub use integration::Integration;
 pub use kalman::Kalman;

@@ -18,6 +18,16 @@ use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 use std::time::Instant;
 
+/// A state at the first of the rows to which segments have led.
+#[derive(Clone)]
+struct Candidate {
+    state: Vec<f64>,
+    steps: u64,
+    refused: usize,
+    /// What it leaves is far more than noise explains.
+    is_far: bool,
+}
+
 /// Segments and starts of multiple shooting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -58,6 +68,13 @@ const MOST_ENDS: usize = 4;
 /// A mean square of the differences, in units of the spreads, that is enough for a search, beside what noise leaves.
 const ENOUGH: f64 = 1e-8;
 
+/// A mean square of the differences, in units of the spreads, from which on a search has hardly explained anything; and so often what is enough.
+const FAR: f64 = 0.05;
+const ENOUGH_FAR: f64 = 100.0;
+
+/// A state that is no farther than this part of the sizes from one that explains the rows is in its basin.
+const SAME_BASIN: f64 = 1e-2;
+
 /// A window is halved as long as a half has so many readings for each unknown.
 const FEWEST: usize = 4;
 
@@ -75,31 +92,11 @@ impl MultipleShooting {
         MovingWindow { method: WindowSearch::TrustRegion, steps, ..self.window }
     }
 
-    /// The end of a search, on the whole window: by a region of trust, and along a valley that bends, where that takes all its steps, by
-    /// Newton's method, whose second derivatives know how it bends.
-    fn end(&self, task: &Task<'_>, state: &[f64], rows: &Range<usize>, clamped: &[usize]) -> Update {
-        let ending = self.ending();
-        let update = ending.update(task, state, rows, clamped);
-        if update.end != UpdateEnd::StepsSpent {
-            return update;
-        }
-        let newton = MovingWindow { method: WindowSearch::Newton, ..ending };
-        let again = newton.update(task, &update.estimate, rows, clamped);
-        match again.cost <= update.cost {
-            true => Update {
-                steps: update.steps + again.steps,
-                troubled: update.troubled + again.troubled,
-                seconds: update.seconds + again.seconds,
-                ..again
-            },
-            false => update,
-        }
-    }
-
     /// What explains the rows: the best state first, then others that fit as well.
     ///
     /// Where nothing fits on the whole window, what fits on its first half is where the search on the whole begins: over
-    /// a shorter time there are fewer false minima.
+    /// a shorter time there are fewer false minima. What segments leave far more of than noise explains is one as a rule, and is followed to its
+    /// end only after that.
     pub fn solutions(
         &self,
         task: &Task<'_>,
@@ -108,20 +105,23 @@ impl MultipleShooting {
         clamped: &[usize],
     ) -> Vec<Update> {
         let begin = Instant::now();
-        let found = self.shot(task, belief, rows, clamped);
+        let told = (rows, clamped);
+        let (far, near): (Vec<Candidate>, Vec<Candidate>) =
+            self.candidates(task, belief, rows, clamped).into_iter().partition(|candidate| candidate.is_far);
+        let mut updates = Vec::new();
+        self.end_all(task, near, told, &mut updates);
+        let is_answered = |updates: &[Update]| updates.iter().any(Update::is_borne_out);
         let half = rows.start..rows.start + rows.len() / 2 + 1;
         let is_long = half.len() * task.full.outputs.len() > FEWEST * task.full.states.len();
-        if found.iter().any(Update::is_borne_out) || !is_long || task.interrupted() {
-            return found;
-        }
-        let shorter = self.solutions(task, belief, &half, clamped);
-        let fitting = shorter.into_iter().filter(Update::is_borne_out);
-        let grown = fitting.map(|update| self.end(task, &update.estimate, rows, clamped));
-        let mut updates: Vec<Update> = Vec::new();
-        for update in grown.chain(found) {
-            if !updates.iter().any(|other| is_one(task, other, &update)) {
-                updates.push(update);
+        if !is_answered(&updates) && is_long && !task.interrupted() {
+            let shorter = self.solutions(task, belief, &half, clamped);
+            for update in shorter.into_iter().filter(Update::is_borne_out) {
+                keep(task, &mut updates, self.window.end(task, &update.estimate, told, None));
             }
+        }
+        if !is_answered(&updates) {
+            let belief = Candidate { state: belief.to_vec(), steps: 0, refused: 0, is_far: true };
+            self.end_all(task, [far, vec![belief]].concat(), told, &mut updates);
         }
         let mut updates = best_first(task, updates);
         if let Some(update) = updates.first_mut() {
@@ -130,12 +130,41 @@ impl MultipleShooting {
         updates
     }
 
-    /// The same, from the whole window alone.
-    fn shot(&self, task: &Task<'_>, belief: &[f64], rows: &Range<usize>, clamped: &[usize]) -> Vec<Update> {
-        let begin = Instant::now();
+    /// Follows candidates to their ends on the whole window: the first one at least, if nothing is known yet.
+    fn end_all(
+        &self,
+        task: &Task<'_>,
+        candidates: Vec<Candidate>,
+        told: (&Range<usize>, &[usize]),
+        updates: &mut Vec<Update>,
+    ) {
+        for candidate in candidates {
+            if task.interrupted() && !updates.is_empty() {
+                break;
+            }
+            let answers = || updates.iter().filter(|update| update.is_borne_out());
+            if answers().any(|update| is_near(task, &update.estimate, &candidate.state, &[], SAME_BASIN)) {
+                continue;
+            }
+            let answer = answers().map(|update| update.misfit).reduce(f64::min);
+            let mut update = self.window.end(task, &candidate.state, told, answer);
+            update.steps += candidate.steps;
+            update.troubled += candidate.refused;
+            keep(task, updates, update);
+        }
+    }
+
+    /// The states to which the segments of the whole window lead, those that leave least first.
+    fn candidates(
+        &self,
+        task: &Task<'_>,
+        belief: &[f64],
+        rows: &Range<usize>,
+        clamped: &[usize],
+    ) -> Vec<Candidate> {
         let segments = self.segments(task, belief, rows, clamped);
         if segments.moving.is_empty() {
-            return vec![self.end(task, belief, rows, clamped)];
+            return Vec::new();
         }
         let bounds = [true, false].map(|are_signs_kept| bounds(task, are_signs_kept));
         let spreads = segments.spread.iter().map(|spread| (task.sigma / spread).powi(2));
@@ -154,32 +183,18 @@ impl MultipleShooting {
         let found: Vec<Option<Found>> = (0..all).into_par_iter().map(one).collect();
         let mut found: Vec<Found> = found.into_iter().flatten().collect();
         found.sort_by(|a, b| (a.misfit + a.gaps).total_cmp(&(b.misfit + b.gaps)));
-        let mut updates: Vec<Update> = Vec::new();
-        let mut tried: Vec<Vec<f64>> = Vec::new();
+        let compared = (segments.measured.len() * segments.spread.len()) as f64;
+        let mut candidates: Vec<Candidate> = Vec::new();
         for found in found {
-            if tried.len() >= MOST_ENDS || (task.interrupted() && !updates.is_empty()) {
-                break;
-            }
             let state = segments.state(&found.nodes, 0)[..task.estimated()].to_vec();
-            if tried.iter().any(|other| is_near(task, other, &state, &[], 1e-3)) {
-                continue;
-            }
-            let mut update = self.end(task, &state, rows, clamped);
-            tried.push(state);
-            update.steps += found.steps;
-            update.troubled += found.refused;
-            if !updates.iter().any(|other| is_one(task, other, &update)) {
-                updates.push(update);
+            if candidates.len() < MOST_ENDS
+                && !candidates.iter().any(|other| is_near(task, &other.state, &state, &[], 1e-3))
+            {
+                let is_far = found.misfit / compared > FAR.max(ENOUGH_FAR * enough);
+                candidates.push(Candidate { state, steps: found.steps, refused: found.refused, is_far });
             }
         }
-        if !updates.iter().any(Update::is_borne_out) {
-            updates.push(self.end(task, belief, rows, clamped));
-        }
-        let mut updates = best_first(task, updates);
-        if let Some(update) = updates.first_mut() {
-            update.seconds = begin.elapsed().as_secs_f64();
-        }
-        updates
+        candidates
     }
 
     pub(super) fn segments<'t>(
@@ -229,7 +244,7 @@ impl MultipleShooting {
         Segments {
             flow: super::ModelFlow {
                 tolerance: (TOLERANCE * least).max(task.tolerance),
-                quick: 1.0,
+                stride: super::Stride::ByTolerance,
                 ..task.full_flow()
             },
             times: &times[rows.clone()],
@@ -259,6 +274,13 @@ fn is_near(task: &Task<'_>, a: &[f64], b: &[f64], deviations: &[f64], part: f64)
 fn is_one(task: &Task<'_>, a: &Update, b: &Update) -> bool {
     let deviations: Vec<f64> = a.deviations.iter().zip(&b.deviations).map(|(a, b)| a + b).collect();
     is_near(task, &a.estimate, &b.estimate, &deviations, SAME.0)
+}
+
+/// Keeps an update that is none of those that are there.
+fn keep(task: &Task<'_>, updates: &mut Vec<Update>, update: Update) {
+    if !updates.iter().any(|other| is_one(task, other, &update)) {
+        updates.push(update);
+    }
 }
 
 /// How far a state lies outside of the sample box, in widths of it.

@@ -1,8 +1,9 @@
-//! One step from a sample to the next where they are near to each other: the pair of J. R. Dormand and P. J. Prince of orders 5 and 4 (A
-//! family of embedded Runge-Kutta formulae, 1980).
+//! Explicit steps without a room of their own: the pair of J. R. Dormand and P. J. Prince of orders 5 and 4 (A family of embedded Runge-Kutta
+//! formulae, 1980), with its interpolation of order 4 (E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 1993, section II.6).
 //!
-//! A method of order eight spends thirteen evaluations where six have no error left that doubles could tell. A step is taken only where the
-//! difference of both formulas is below what is tolerated; nothing is refined here.
+//! A method of order eight spends thirteen evaluations where six have no error left that doubles could tell: from one sample to the next a step is
+//! taken where the difference of both formulas is below what is tolerated, and nothing is refined ([`QuickSteps::take`]). A search does not
+//! need so much: it goes through many samples in steps as long as the tolerance allows ([`QuickSteps::go_through`]).
 
 const NODES: [f64; 7] = [0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0, 1.0];
 
@@ -19,6 +20,33 @@ const STAGES: [[f64; 6]; 7] = [
 /// The formula of order five minus that of order four.
 const DIFFERENCE: [f64; 7] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
+
+/// What the rates give to the last term of the interpolation.
+const BETWEEN: [f64; 7] = [
+    -12715105075.0 / 11282082432.0,
+    0.0,
+    87487479700.0 / 32700410799.0,
+    -10690763975.0 / 1880347072.0,
+    701980252875.0 / 199316789632.0,
+    -1453857185.0 / 822651844.0,
+    69997945.0 / 29380423.0,
+];
+
+/// A step is this part of the longest one that the error estimate allows, and no shorter or longer than these parts of the one before.
+const SAFETY: f64 = 0.9;
+const CHANGE: (f64, f64) = (0.1, 5.0);
+
+/// A step shorter than this part of the way is none.
+const SHORTEST: f64 = 1e-12;
+
+/// Why a way was not gone to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stopped {
+    /// No step is small enough.
+    TooShort,
+    /// The evaluations that are allowed are spent.
+    Spent,
+}
 
 /// The room of a step, and the rate at the last state, which is the first of the next step.
 #[derive(Default)]
@@ -49,33 +77,114 @@ impl QuickSteps {
             self.rest -= 1;
             return false;
         }
-        let (n, step) = (y.len(), to - from);
+        self.step(f, from, to - from, y);
+        // a number that is none is not small
+        let is_small = self.error(to - from, y) <= tolerance;
+        self.is_begun = is_small;
+        if is_small {
+            self.arrive(y);
+        } else {
+            self.rest = REST;
+        }
+        is_small
+    }
+
+    /// Takes `y` through increasing times, from the first to the last, in steps as long as the tolerance allows, and tells the place and the state of each
+    /// after the first, interpolated between the steps.
+    ///
+    /// # Errors
+    /// Where and why it stops.
+    pub fn go_through(
+        &mut self,
+        f: &impl Fn(f64, &[f64], &mut [f64]),
+        times: &[f64],
+        y: &mut [f64],
+        (tolerance, most): (f64, usize),
+        mut tell: impl FnMut(usize, &[f64]),
+    ) -> Result<(), (f64, Stopped)> {
+        let [from, .., end] = *times else { return Ok(()) };
+        let (mut time, mut step, mut next, mut steps) = (from, end - from, 1, 0);
+        let mut between = Vec::with_capacity(y.len());
+        while next < times.len() {
+            steps += 1;
+            if 6 * steps > most {
+                return Err((time, Stopped::Spent));
+            }
+            let left = end - time;
+            // two even steps rather than a long one and a rest
+            let length = if step >= left { left } else { step.min(left / 2.0) };
+            self.step(f, time, length, y);
+            let error = self.error(length, y) / tolerance;
+            let change = (SAFETY * error.powf(-0.2)).clamp(CHANGE.0, CHANGE.1);
+            // of no number there is no part
+            step = length * if change.is_nan() { CHANGE.0 } else { change };
+            if error.is_nan() || error > 1.0 {
+                if step <= SHORTEST * (end - from) {
+                    return Err((time, Stopped::TooShort));
+                }
+                continue;
+            }
+            let to = if length == left { end } else { time + length };
+            while next < times.len() && times[next] < to {
+                self.interpolate((times[next] - time) / length, length, y, &mut between);
+                tell(next, &between);
+                next += 1;
+            }
+            self.arrive(y);
+            time = to;
+            while next < times.len() && times[next] == to {
+                tell(next, y);
+                next += 1;
+            }
+        }
+        Ok(())
+    }
+
+    /// The rates along a step, and the state at its end.
+    fn step(&mut self, f: &impl Fn(f64, &[f64], &mut [f64]), from: f64, length: f64, y: &[f64]) {
+        let n = y.len();
         self.there.resize(n, 0.0);
         self.rates.iter_mut().for_each(|rate| rate.resize(n, 0.0));
         if !self.is_begun {
             f(from, y, &mut self.rates[0]);
+            self.is_begun = true;
         }
         for stage in 1..7 {
             let (done, rest) = self.rates.split_at_mut(stage);
             for (i, there) in self.there.iter_mut().enumerate() {
                 let sum: f64 = done.iter().zip(&STAGES[stage]).map(|(rate, part)| part * rate[i]).sum();
-                *there = y[i] + step * sum;
+                *there = y[i] + length * sum;
             }
-            f(from + NODES[stage] * step, &self.there, &mut rest[0]);
+            f(from + NODES[stage] * length, &self.there, &mut rest[0]);
         }
-        let is_small = (0..n).all(|i| {
+    }
+
+    /// The most that both formulas differ by at the end of a step, in parts of one or of a value; no number where one of them is none.
+    fn error(&self, length: f64, y: &[f64]) -> f64 {
+        let one = |i: usize| {
             let off: f64 = self.rates.iter().zip(&DIFFERENCE).map(|(rate, part)| part * rate[i]).sum();
-            // a number that is none is not small
-            (step * off).abs() <= tolerance * (1.0 + y[i].abs().max(self.there[i].abs()))
-        });
-        self.is_begun = is_small;
-        if is_small {
-            y.copy_from_slice(&self.there);
-            self.rates.swap(0, 6);
-        } else {
-            self.rest = REST;
-        }
-        is_small
+            (length * off).abs() / (1.0 + y[i].abs().max(self.there[i].abs()))
+        };
+        (0..y.len()).map(one).fold(0.0, |most, off| if off > most || off.is_nan() { off } else { most })
+    }
+
+    /// The state at a part of a step that has been made from `y`.
+    fn interpolate(&self, part: f64, length: f64, y: &[f64], between: &mut Vec<f64>) {
+        between.clear();
+        let rest = 1.0 - part;
+        between.extend((0..y.len()).map(|i| {
+            let whole = self.there[i] - y[i];
+            let begin = length * self.rates[0][i] - whole;
+            let end = whole - length * self.rates[6][i] - begin;
+            let last: f64 = self.rates.iter().zip(&BETWEEN).map(|(rate, part)| part * rate[i]).sum();
+            y[i] + part * (whole + rest * (begin + part * (end + rest * length * last)))
+        }));
+    }
+
+    /// The step is taken.
+    fn arrive(&mut self, y: &mut [f64]) {
+        y.copy_from_slice(&self.there);
+        self.rates.swap(0, 6);
     }
 
     /// The state was moved by others.
@@ -87,6 +196,8 @@ impl QuickSteps {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::advance;
+    use std::cell::Cell;
 
     /// `y' = y` along a hundred short steps is the exponential to rounding; along a long one it is refused, and nothing moves.
     #[test]
@@ -103,5 +214,57 @@ mod tests {
         assert_eq!(y, before);
         let nowhere = |_: f64, _: &[f64], dy: &mut [f64]| dy.fill(f64::NAN);
         assert!(!QuickSteps::default().take(&nowhere, 0.0, 1e-6, &mut y, 1e-14));
+    }
+
+    /// A driven, damped pendulum through irregular samples: what is interpolated is where the method of order eight comes to from sample to sample, with
+    /// fewer evaluations than three a sample; and four times the tolerance's fifth root makes steps longer, not samples fewer.
+    #[test]
+    fn long_steps_meet_the_samples_between() {
+        let f = |time: f64, y: &[f64], dy: &mut [f64]| {
+            dy[0] = y[1];
+            dy[1] = -y[0].sin() - 0.1 * y[1] + (2.0 * time).cos();
+        };
+        let times: Vec<f64> =
+            (0..60).map(|i| 3.0 + 0.05 * f64::from(i) + 0.01 * f64::from(i * i % 3)).collect();
+        for (tolerance, most) in [(1e-6, 3.0), (1e-9, 10.0)] {
+            let count = Cell::new(0);
+            let counted = |time: f64, y: &[f64], dy: &mut [f64]| {
+                count.set(count.get() + 1);
+                f(time, y, dy);
+            };
+            let (mut y, mut found) = (vec![1.0, 0.5], vec![vec![1.0, 0.5]]);
+            let tell = |place: usize, state: &[f64]| {
+                assert_eq!(place, found.len());
+                found.push(state.to_vec());
+            };
+            QuickSteps::default().go_through(&counted, &times, &mut y, (tolerance, 10_000), tell).unwrap();
+            assert!(f64::from(count.get()) < most * times.len() as f64, "{} evaluations", count.get());
+            assert_eq!(found.len(), times.len());
+            assert_eq!(found.last(), Some(&y));
+            let mut there = vec![1.0, 0.5];
+            for (pair, state) in times.windows(2).zip(&found[1..]) {
+                there = advance(&f, pair[0], pair[1], &there, 1e-13).unwrap();
+                let off = (0..2).map(|i| (there[i] - state[i]).abs()).fold(0.0, f64::max);
+                assert!(off < 20.0 * tolerance, "{pair:?}: {off:e}");
+            }
+        }
+    }
+
+    /// Towards a pole steps become shorter until there are none, or no more evaluations are allowed.
+    #[test]
+    fn nothing_is_told_beyond_a_pole() {
+        let pole = |_: f64, y: &[f64], dy: &mut [f64]| dy[0] = y[0] * y[0];
+        for (most, why) in [(100_000, Stopped::TooShort), (60, Stopped::Spent)] {
+            let mut told = 0;
+            let way = QuickSteps::default().go_through(
+                &pole,
+                &[0.0, 0.5, 2.0],
+                &mut [1.0],
+                (1e-7, most),
+                |_, _| told += 1,
+            );
+            let (time, stopped) = way.unwrap_err();
+            assert!(stopped == why && time <= 1.0 && told == 1, "{time} {stopped:?} {told}");
+        }
     }
 }

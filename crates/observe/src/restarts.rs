@@ -4,18 +4,18 @@
 //! ranges, and then at points that fill them evenly (J. H. Halton, 1960). The first end that explains the readings is the answer. Where three
 //! searches have come to one least error that does not, the model has no other that they would find, and they stop.
 
+use super::MovingWindow;
 use super::multiple_shooting::LAST_STEPS;
 use super::starts::range;
 use super::task::Task;
 use super::track::{Update, UpdateEnd};
-use super::{MovingWindow, WindowSearch};
 use std::ops::Range;
 
 /// So many other states are tried, at most.
 const STARTS: usize = 12;
 
-/// No more steps are taken in all of them: near poles each is dear.
-const MOST_STEPS: u64 = 2 * LAST_STEPS;
+/// No more steps are taken in all of them.
+const MOST_STEPS: u64 = 6 * LAST_STEPS;
 
 /// So many other searches that come to the same error end them.
 const AGREE: usize = 2;
@@ -84,19 +84,17 @@ impl MovingWindow {
         if !task.restarts || is_known || !self.came_to_nothing(&update) {
             return (update, false);
         }
-        let searching =
-            MovingWindow { method: WindowSearch::TrustRegion, steps: self.steps.max(LAST_STEPS), ..*self };
         let (mut least, mut agree, mut steps) = (least_error(&update), 0, 0);
         for start in starts(task, belief, clamped) {
             if task.interrupted() || agree >= AGREE || steps >= MOST_STEPS {
                 break;
             }
-            let found = searching.update_and_ask(task, &start, rows, clamped, false);
+            let found = self.end(task, &start, (rows, clamped), None);
             // of a search that met a pole nobody knows how far it came
             let is_lost = matches!(found.end, UpdateEnd::Lost(_));
             steps += if is_lost { LAST_STEPS / 2 } else { found.steps };
             if found.is_borne_out() {
-                let own = MovingWindow { steps: searching.steps, ..*self };
+                let own = MovingWindow { steps: self.steps.max(LAST_STEPS), ..*self };
                 let again = own.update_and_ask(task, &found.estimate, rows, clamped, true);
                 return (if again.is_borne_out() { again } else { found }, true);
             }

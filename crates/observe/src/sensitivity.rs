@@ -293,7 +293,8 @@ mod tests {
         };
         let model = Model::new(&system, &question, &signals).unwrap();
         assert_eq!(model.outputs, ["x + a*u", "v"]);
-        let flow = ModelFlow { model: &model, signals: &signals, tolerance: 1e-11, quick: crate::CAREFUL };
+        let flow =
+            ModelFlow { model: &model, signals: &signals, tolerance: 1e-11, stride: crate::Stride::BySample };
         let times = signals.times()[6..18].to_vec();
         let start = [0.4, -0.2];
         let columns = vec![signals.find("a").unwrap(), signals.find("u").unwrap()];

@@ -1,7 +1,7 @@
 //! What every observer is given: signals, models of what made them, and what is known beside them.
 
 use super::fit::Noise;
-use super::flow::CAREFUL;
+use super::flow::Stride;
 use super::learned::{Arrival, Learned};
 use super::loss::Loss;
 use super::track::Track;
@@ -58,6 +58,8 @@ pub struct Task<'a> {
     pub restarts: bool,
     /// The tolerance of the integration.
     pub tolerance: f64,
+    /// How it goes from one sample to the next.
+    pub(super) stride: Stride,
     /// Set from outside to stop: what is done by then is given back.
     pub interrupt: &'a AtomicBool,
     /// What the models were made from, for who asks what else they could have been.
@@ -76,6 +78,9 @@ pub struct EstimateQuestion {
     /// Input fields and the symbols that drive them.
     pub inputs: Vec<(String, String)>,
 }
+
+/// The tolerance of a search that is far from its end, in parts of one, or of the smallest size of what is sought where that is less.
+const ROUGH: f64 = 1e-8;
 
 /// The default of [`Task::tolerance`].
 pub const TOLERANCE: f64 = 1e-11;
@@ -162,6 +167,7 @@ impl<'a> Task<'a> {
             arrival: None,
             restarts: false,
             tolerance: TOLERANCE,
+            stride: Stride::BySample,
             interrupt,
             source: Arc::new((system.clone(), wanted.clone())),
         })
@@ -193,8 +199,14 @@ impl<'a> Task<'a> {
         self.interrupt.load(Ordering::Relaxed)
     }
 
+    /// The same, for a search that is still far from its end: less exact, in longer steps.
+    pub(super) fn roughly(&self) -> Task<'a> {
+        let tolerance = (ROUGH * self.sizes.iter().copied().fold(1.0, f64::min)).max(self.tolerance);
+        Task { tolerance, stride: Stride::ByTolerance, ..self.clone() }
+    }
+
     pub(super) fn full_flow(&self) -> ModelFlow<'_> {
-        ModelFlow { model: &self.full, signals: self.signals, tolerance: self.tolerance, quick: CAREFUL }
+        ModelFlow { model: &self.full, signals: self.signals, tolerance: self.tolerance, stride: self.stride }
     }
 
     /// The full state at a sample: what is sought as it is believed, the outputs as they are read there.
@@ -265,7 +277,7 @@ impl<'a> Task<'a> {
             model: &self.reduced,
             signals: self.signals,
             tolerance: self.tolerance,
-            quick: CAREFUL,
+            stride: Stride::BySample,
         };
         let samples = flow.follow(sought, &[], &self.signals.times()[rows], Order::Value)?;
         Ok(samples.into_iter().map(|sample| sample.state).collect())

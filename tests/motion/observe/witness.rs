@@ -6,7 +6,7 @@ use palmistry::System;
 use palmistry::experiment::{Experiment, Simulation};
 use palmistry::expression::{Input, NodeId, Program};
 use palmistry::number::Floats;
-use palmistry::observer::{CAREFUL, ModelFlow, Order, Sample};
+use palmistry::observer::{ModelFlow, Order, Sample, Stride};
 use std::path::Path;
 
 /// The central difference of order eight: the weights of the values one to four steps away.
@@ -151,7 +151,8 @@ fn followed<T>(experiment: &Experiment, ask: impl FnOnce(&Followed<'_>) -> T) ->
     let task = experiment.task(&NEVER).unwrap();
     let simulation = experiment.simulation.as_ref().unwrap();
     let start = task.full.states.iter().map(|name| simulation.truth(name).unwrap()[0]).collect();
-    let flow = ModelFlow { model: &task.full, signals: task.signals, tolerance: 1e-13, quick: CAREFUL };
+    let flow =
+        ModelFlow { model: &task.full, signals: task.signals, tolerance: 1e-13, stride: Stride::BySample };
     ask(&Followed { flow, start, times: &task.signals.times()[..=80] })
 }
 

@@ -1,0 +1,56 @@
+//! The end of a search in a window: roughly first, then exactly, and along a valley that bends by second derivatives.
+
+use super::multiple_shooting::LAST_STEPS;
+use super::task::Task;
+use super::track::{Update, UpdateEnd};
+use super::{MovingWindow, WindowSearch};
+use std::ops::Range;
+
+/// What leaves so many times as much as an answer, as noise, or as this part of the largest reading, which a rough search may leave, is none.
+const FAR_FROM_ANSWER: f64 = 10.0;
+const ROUGHLY: f64 = 1e-5;
+
+impl MovingWindow {
+    /// Where a search from a state ends: by a region of trust, with integration that is less exact first, and where that takes all its steps, by
+    /// Newton's method, whose second derivatives know how a valley bends. Where there is an answer, which leaves so much in the readings' unit, no more is
+    /// done for what leaves far more.
+    pub(super) fn end(
+        &self,
+        task: &Task<'_>,
+        state: &[f64],
+        (rows, clamped): (&Range<usize>, &[usize]),
+        answer: Option<f64>,
+    ) -> Update {
+        let steps = self.steps.max(LAST_STEPS);
+        let trusting = MovingWindow { method: WindowSearch::TrustRegion, steps, ..*self };
+        let rough = trusting.update(&task.roughly(), state, rows, clamped);
+        let read =
+            rows.clone().flat_map(|row| task.readings(row)).fold(0.0, |most: f64, x| most.max(x.abs()));
+        let least = |left: f64| left.max(task.sigma).max(ROUGHLY * read);
+        if answer.is_some_and(|left| !(rough.misfit <= FAR_FROM_ANSWER * least(left))) {
+            return rough;
+        }
+        let is_lost = matches!(rough.end, UpdateEnd::Lost(_));
+        let begin = if is_lost { state } else { &rough.estimate };
+        let update = added(&rough, trusting.update(task, begin, rows, clamped));
+        if answer.is_some() || update.end != UpdateEnd::StepsSpent {
+            return update;
+        }
+        let newton = MovingWindow { method: WindowSearch::Newton, steps, ..*self };
+        let again = newton.update(task, &update.estimate, rows, clamped);
+        match again.cost <= update.cost {
+            true => added(&update, again),
+            false => update,
+        }
+    }
+}
+
+/// An update, with what was done for it before.
+fn added(before: &Update, update: Update) -> Update {
+    Update {
+        steps: before.steps + update.steps,
+        troubled: before.troubled + update.troubled,
+        seconds: before.seconds + update.seconds,
+        ..update
+    }
+}
