@@ -46,7 +46,7 @@ impl MovingWindow {
 }
 
 /// An update, with what was done for it before.
-fn added(before: &Update, update: Update) -> Update {
+pub(super) fn added(before: &Update, update: Update) -> Update {
     Update {
         steps: before.steps + update.steps,
         troubled: before.troubled + update.troubled,

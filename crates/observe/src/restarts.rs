@@ -1,10 +1,11 @@
 //! Where the search of a first window comes to nothing: searches from other states, within what is said of where the state lies.
 //!
-//! A search goes down into the basin in which it begins. Where its end does not explain the readings it begins again: in the middle of the bounds or the file's
+//! A search goes down into the basin in which it begins, and along a valley to its end by second derivatives. Where its end does not explain the readings it begins again: in the middle of the bounds or the file's
 //! ranges, and then at points that fill them evenly (J. H. Halton, 1960). The first end that explains the readings is the answer. Where three
 //! searches have come to one least error that does not, the model has no other that they would find, and they stop.
 
 use super::MovingWindow;
+use super::ending::added;
 use super::multiple_shooting::LAST_STEPS;
 use super::starts::range;
 use super::task::Task;
@@ -81,7 +82,21 @@ impl MovingWindow {
         clamped: &[usize],
     ) -> (Update, bool) {
         let is_known = rows.start > 0 || task.learned.is_some();
-        if !task.restarts || is_known || !self.came_to_nothing(&update) {
+        if !task.restarts || is_known {
+            return (update, false);
+        }
+        // a search that has spent many steps is on its way along a valley: to the end of that first
+        let update = match update.end {
+            UpdateEnd::StepsSpent if self.steps >= LAST_STEPS && !task.interrupted() => {
+                let there = added(&update, self.end(task, &update.estimate, (rows, clamped), None));
+                if there.is_borne_out() {
+                    return (self.confirmed(task, there, rows, clamped), false);
+                }
+                if there.cost < update.cost { there } else { update }
+            }
+            _ => update,
+        };
+        if !self.came_to_nothing(&update) {
             return (update, false);
         }
         let (mut least, mut agree, mut steps) = (least_error(&update), 0, 0);
@@ -94,9 +109,7 @@ impl MovingWindow {
             let is_lost = matches!(found.end, UpdateEnd::Lost(_));
             steps += if is_lost { LAST_STEPS / 2 } else { found.steps };
             if found.is_borne_out() {
-                let own = MovingWindow { steps: self.steps.max(LAST_STEPS), ..*self };
-                let again = own.update_and_ask(task, &found.estimate, rows, clamped, true);
-                return (if again.is_borne_out() { again } else { found }, true);
+                return (self.confirmed(task, found, rows, clamped), true);
             }
             let Some(error) = least_error(&found) else { continue };
             match least {
@@ -106,6 +119,13 @@ impl MovingWindow {
             }
         }
         (update, false)
+    }
+
+    /// What was found, by the search that was asked for, with its suspects.
+    fn confirmed(&self, task: &Task<'_>, found: Update, rows: &Range<usize>, clamped: &[usize]) -> Update {
+        let own = MovingWindow { steps: self.steps.max(LAST_STEPS), ..*self };
+        let again = own.update_and_ask(task, &found.estimate, rows, clamped, true);
+        if again.is_borne_out() { again } else { found }
     }
 
     /// Whether a search is at an end that is no answer. What explains the readings without telling what is sought is one: another basin would be another

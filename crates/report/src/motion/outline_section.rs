@@ -13,7 +13,11 @@ use maud::{Markup, PreEscaped, html};
 pub(super) fn shape_section(observed: &Observed<'_>) -> Markup {
     let Some(found) = reconstruction(observed.answers) else { return html! {} };
     let Some(shape) = &found.shape else {
-        return html! { p.remark { "Nothing of the shape was touched." } };
+        let why = found.contradiction.iter().map(contradiction_in_words);
+        let why: Vec<String> = why.chain(found.apart.iter().map(apart_in_words)).collect();
+        return html! {
+            p.remark { "The shape is not estimated" @for why in &why { "; " (why) } "." }
+        };
     };
     let truth = truth(observed.experiment);
     let covered = |angle: f64| found.coverage.contains(angle);

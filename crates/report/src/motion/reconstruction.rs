@@ -95,8 +95,10 @@ pub(super) fn shape_text(experiment: &Experiment, answers: &[Answer]) -> String 
     let mut text = String::new();
     let Some(found) = reconstruction(answers) else { return text };
     let Some(shape) = &found.shape else {
-        let _ = writeln!(text, "\nshape: nothing of it was touched");
-        text.extend(found.apart.iter().map(|apart| format!("  {}\n", apart_in_words(apart))));
+        let _ = writeln!(text, "\nshape: no estimate");
+        let why = found.contradiction.iter().map(contradiction_in_words);
+        let why = why.chain(found.apart.iter().map(apart_in_words));
+        text.extend(why.map(|why| format!("  {why}\n")));
         return text;
     };
     let _ = writeln!(text, "\nshape, {}: {}", from_in_words(found), model_in_words(shape));

@@ -1,15 +1,26 @@
 //! All readings at once against what windows make of theirs: both are of one body.
 
-use super::super::recovered::{Contradiction, WholeMotion};
+use super::super::recovered::{Contradiction, WholeMotion, WholeSample};
 use super::super::run::Answer;
+use super::whole::EXACT;
 use palmistry_bodies::shape::Measured;
 use palmistry_observe::{Seam, Update};
 
 /// So many deviations are not chance.
 const CERTAIN: f64 = 5.0;
 
-/// What interpolation between samples leaves of a value.
+/// What interpolation between samples leaves of a value, in parts of the largest over the record: the readings that drive the model are known at samples only.
 const COMPUTED: f64 = 1e-7;
+
+/// The same across a kink of the body's curvature, which the torques show: only readings without noise see it.
+const KINKED: f64 = 1e-4;
+
+/// Whether a motion leaves nothing of readings whose noise nobody states.
+fn is_exact(whole: &WholeMotion) -> bool {
+    let size =
+        whole.samples.iter().flat_map(|at| at.radii).map(|radius| radius.value.abs()).fold(0.0, f64::max);
+    !whole.stated && whole.misfit <= EXACT * size
+}
 
 /// Whether each window meets its neighbours: one that is too far from either does not, nor one that meets none where others meet. Which of two is wrong is not known.
 fn are_at_one(updates: &[Update]) -> Vec<bool> {
@@ -27,11 +38,14 @@ fn are_at_one(updates: &[Update]) -> Vec<bool> {
 fn farthest(names: &[&str], update: &Update, whole: &WholeMotion) -> Option<(f64, Contradiction)> {
     let row = whole.samples.binary_search_by(|sample| sample.time.total_cmp(&update.from));
     let sample = whole.samples.get(row.ok()?)?;
-    let told = [("r1", sample.radii[0]), ("r2", sample.radii[1]), ("omega0", sample.omega0)];
-    let off = told.into_iter().filter_map(|(name, of_all)| {
+    let of: [(&str, fn(&WholeSample) -> Measured); 3] =
+        [("r1", |at| at.radii[0]), ("r2", |at| at.radii[1]), ("omega0", |at| at.omega0)];
+    let off = of.into_iter().filter_map(|(name, of)| {
+        let of_all = of(sample);
+        let most = whole.samples.iter().map(|at| of(at).value.abs()).fold(0.0, f64::max);
         let place = names.iter().position(|other| *other == name)?;
         let by_window = Measured { value: update.estimate[place], deviation: update.deviations[place] };
-        let computed = COMPUTED * by_window.value.abs();
+        let computed = if is_exact(whole) { KINKED * most } else { COMPUTED * most };
         let deviation = by_window.deviation.hypot(of_all.deviation).hypot(computed);
         let off = (by_window.value - of_all.value).abs() / deviation;
         let name = name.to_owned();
@@ -40,8 +54,12 @@ fn farthest(names: &[&str], update: &Update, whole: &WholeMotion) -> Option<(f64
     off.max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// What windows that fit and meet their neighbours contradict most of a motion; none where they bear it out.
+/// What windows that fit and meet their neighbours contradict most of a motion; none where they bear it out. A motion that leaves nothing of readings whose noise nobody
+/// states is contradicted by none: what windows say beside it is what interpolation makes of the readings that drive their model.
 pub(super) fn contradiction(names: &[&str], answer: &Answer, whole: &WholeMotion) -> Option<Contradiction> {
+    if is_exact(whole) {
+        return None;
+    }
     let updates = &answer.track.updates;
     let windows = updates.iter().zip(are_at_one(updates));
     let at_one = windows.filter(|(update, at_one)| *at_one && update.is_borne_out());

@@ -58,7 +58,8 @@ impl Experiment {
             Err(found) => apart = found,
         }
         let (shape, coverage) = from_track(&track, !answer.track.updates.is_empty());
-        let shape = shape.filter(|_| track::hole(answer, self.scene.observer.when_blind).is_none());
+        let shape = shape
+            .filter(|_| track::no_outline(answer, &track.forms, self.scene.observer.when_blind).is_none());
         Some(Reconstruction { track, shape, coverage, whole: None, contradiction, apart })
     }
 
@@ -84,13 +85,8 @@ impl Experiment {
                     answer.track.updates[place].seam = Some(seam);
                     answer.track.remarks.push(why);
                 }
-                let hole = track::hole(answer, self.scene.observer.when_blind);
-                if let Some(from) = hole.filter(|_| found.whole.is_none()) {
-                    let why = format!(
-                        "no outline is estimated from the windows: from {from:.3} s there is no answer"
-                    );
-                    answer.track.remarks.push(why);
-                }
+                let why = track::no_outline(answer, &found.track.forms, self.scene.observer.when_blind);
+                answer.track.remarks.extend(why.filter(|_| found.whole.is_none()));
                 answer.reconstruction = Some(Box::new(found));
             }
         }

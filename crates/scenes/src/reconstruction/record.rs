@@ -2,6 +2,7 @@
 
 use super::super::recovered::Apart;
 use super::law::{PalmsAt, Pose, pose};
+use super::stepping::{NODES, node};
 use num_dual::{Derivative, DualSVec64};
 use palmistry_bodies::shape::{ShapeEstimate, SupportFunction};
 use palmistry_observe::Signals;
@@ -97,13 +98,12 @@ impl WholeRecord {
         self.known.get(&time.to_bits()).copied().unwrap_or_else(|| self.interpolated(time))
     }
 
-    /// Fills what is known of the palms: at each sample, in the middle of what follows and of its halves.
+    /// Fills what is known of the palms: at each sample, and where a step from it to the next asks.
     pub fn know_palms(&mut self) {
         let asked = self.times.windows(2).flat_map(|pair| {
             let [from, to] = [pair[0], pair[1]];
-            let middle = f64::midpoint(from, to);
-            let halfway = |from: f64, to: f64| from + (to - from) / 2.0;
-            [from, to, middle, halfway(from, to), halfway(from, middle), halfway(middle, to)]
+            let nodes = (0..NODES.len()).map(move |stage| node(from, to, stage));
+            nodes.chain([f64::midpoint(from, to)])
         });
         self.known = asked.map(|time| (time.to_bits(), self.interpolated(time))).collect();
     }

@@ -4,8 +4,8 @@
 //! never more than convexity allows; each is weighed by the probability that it gives to the readings, and the shape is the mean of all, with the covariance of the mixture. About one
 //! point, where all is linear, a triangle of the largest order's rows has all others in its corners.
 
-use super::candidate::{Best, Found, gained};
-use super::descent::{inverse, joined, solved};
+use super::candidate::{Best, Found, Whole, gained};
+use super::descent::{Squares, inverse, joined, solved};
 use super::record::{Unknowns, WholeRecord};
 use nalgebra::{DMatrix, DVector};
 use palmistry_bodies::shape::{SupportFunction, SupportSeries};
@@ -129,11 +129,14 @@ impl WholeRecord {
                 let found = self.found(at, (motion, &rows_there), mixture.covariance, mixture.evidence);
                 return Some((found, mixture.last));
             }
-            // what is linear about one point may not be about another: the likeliest belief goes there by itself
+            // what is linear about one point may not be about another: the likeliest belief goes there by itself, from the mean or, where that explains less, from the point
             let weights = mixture.likeliest.weights(self.size());
-            let mut likeliest = mean;
-            likeliest = expanded(&likeliest, mixture.likeliest.order);
-            let Best { x: next, .. } = self.descend(likeliest, &weights, rows, interrupt)?;
+            let whole = Whole { record: self, rows, prior: &weights };
+            let begins = [mean, x].map(|begin| expanded(&begin, mixture.likeliest.order));
+            let sums = begins.each_ref().map(|begin| whole.sum(begin).unwrap_or(f64::INFINITY));
+            let [mean, point] = begins;
+            let begin = if sums[0] <= sums[1] { mean } else { point };
+            let Best { x: next, .. } = self.descend(begin, &weights, rows, interrupt)?;
             x = expanded(&next, order);
         }
     }

@@ -1,13 +1,36 @@
 //! The motion from one sample to the next, with its derivatives by the unknowns.
 //!
-//! Kutta's method of the fourth order, once over a span and twice over its halves: where both differ the span is halved, as it has to be where the curvature of the body has a kink. The derivatives obey linear
+//! The pair of J. R. Dormand and P. J. Prince of orders 5 and 4 (1980): where both differ the span is halved, as it has to be where the curvature of the body has a kink. The derivatives obey linear
 //! equations that are the same for all unknowns but for what drives them: these are carried by two solutions and Simpson's rule, for hundreds of unknowns at the cost of a few. They are good to a millionth, which a search
 //! needs and a bound; the motion itself is good to the tolerance.
 
 use super::record::{Followed, INPUTS, Unknowns, WholeRecord, parts};
 
-/// Both ways over a span differ by no more than this, in rad and rad/s.
+/// Both formulas differ by no more than this at the end of a span, in rad and rad/s.
 const TOLERANCE: f64 = 1e-11;
+
+/// Where in a span the rates are taken, what each takes of those before it, and what both formulas and the interpolated state in the middle of the span take of all.
+pub(super) const NODES: [f64; 6] = [0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0];
+const STAGES: [[f64; 6]; 6] = [
+    [0.0; 6],
+    [1.0 / 5.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
+    [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0, 0.0, 0.0, 0.0],
+    [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0, 0.0, 0.0],
+    [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0, 0.0],
+];
+const END: [f64; 7] = [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0, 0.0];
+const DIFFERENCE: [f64; 7] =
+    [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
+const MIDDLE: [f64; 7] = [
+    6025192743.0 / 60171106304.0,
+    0.0,
+    51252292925.0 / 130801643196.0,
+    -2691868925.0 / 90256659456.0,
+    187940372067.0 / 3189068634112.0,
+    -1776094331.0 / 39487288512.0,
+    11237099.0 / 470086768.0,
+];
 
 /// A span is halved this often at most.
 const DEPTH: u32 = 16;
@@ -25,11 +48,25 @@ enum Unfollowed {
     Steps,
 }
 
-/// Angle and rate, and their derivatives by the free unknowns; none where they are not wanted.
+/// Angle and rate, their rates, and their derivatives by the free unknowns; none where they are not wanted.
 #[derive(Clone)]
 struct Moving {
     at: [f64; 2],
+    rates: [f64; 2],
     slopes: [Vec<f64>; 2],
+    /// What is linear about the motion there, where a step before has asked.
+    linear: Option<Linear>,
+}
+
+/// The derivatives of the acceleration by angle and rate, and by the free unknowns.
+type Linear = ([f64; 2], Vec<f64>);
+
+/// A span that was passed: what is in its middle and at its end, the rates there, and by how much both formulas differ.
+struct Passed {
+    middle: [f64; 2],
+    end: [f64; 2],
+    rates: [f64; 2],
+    off: f64,
 }
 
 type Matrix = [[f64; 2]; 2];
@@ -47,7 +84,9 @@ impl WholeRecord {
 
     fn followed(&self, x: &Unknowns, rows: usize, derivatives: bool) -> Result<Vec<Followed>, Unfollowed> {
         let p = if derivatives { self.head() + x.support.coefficients().len() } else { 0 };
-        let mut state = Moving { at: [self.phi, x.rate], slopes: [vec![0.0; p], vec![0.0; p]] };
+        let at = [self.phi, x.rate];
+        let rates = self.rates(self.times[0], at, x);
+        let mut state = Moving { at, rates, slopes: [vec![0.0; p], vec![0.0; p]], linear: None };
         if p > 0 && self.rate.is_none() {
             state.slopes[1][0] = 1.0;
         }
@@ -90,16 +129,30 @@ impl WholeRecord {
         }
     }
 
-    /// One step of Kutta's method.
-    fn stepped(&self, [from, to]: [f64; 2], at: [f64; 2], x: &Unknowns) -> [f64; 2] {
+    /// The rates of angle and rate.
+    fn rates(&self, time: f64, at: [f64; 2], x: &Unknowns) -> [f64; 2] {
+        [at[1], self.pose(time, at[0], at[1], x).acceleration]
+    }
+
+    /// A span in one step.
+    fn stepped(&self, [from, to]: [f64; 2], state: &Moving, x: &Unknowns) -> Passed {
         let step = to - from;
-        let rates = |time: f64, at: [f64; 2]| [at[1], self.pose(time, at[0], at[1], x).acceleration];
-        let plus = |by: f64, slope: [f64; 2]| [at[0] + by * slope[0], at[1] + by * slope[1]];
-        let first = rates(from, at);
-        let second = rates(from + step / 2.0, plus(step / 2.0, first));
-        let third = rates(from + step / 2.0, plus(step / 2.0, second));
-        let fourth = rates(to, plus(step, third));
-        [0, 1].map(|i: usize| at[i] + step / 6.0 * (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]))
+        let mut rates = [[0.0; 2]; 7];
+        rates[0] = state.rates;
+        let sum = |rates: &[[f64; 2]; 7], parts: &[f64], i: usize| -> f64 {
+            step * parts.iter().zip(rates).map(|(part, rate)| part * rate[i]).sum::<f64>()
+        };
+        let plus =
+            |rates: &[[f64; 2]; 7], parts: &[f64]| [0, 1].map(|i: usize| state.at[i] + sum(rates, parts, i));
+        for stage in 1..6 {
+            let there = plus(&rates, &STAGES[stage]);
+            rates[stage] = self.rates(node(from, to, stage), there, x);
+        }
+        let end = plus(&rates, &END);
+        rates[6] = self.rates(to, end, x);
+        let off = [0, 1].map(|i: usize| sum(&rates, &DIFFERENCE, i).abs());
+        let off = if off[0].is_nan() || off[1].is_nan() { f64::NAN } else { off[0].max(off[1]) };
+        Passed { middle: plus(&rates, &MIDDLE), end, rates: rates[6], off }
     }
 
     /// The state at the end of a span, which may be halved so often and take so many steps.
@@ -113,51 +166,48 @@ impl WholeRecord {
         *steps = steps.checked_sub(1).ok_or(Unfollowed::Steps)?;
         let [from, to] = span;
         let middle = f64::midpoint(from, to);
-        let whole = self.stepped(span, state.at, x);
-        let half = self.stepped([from, middle], state.at, x);
-        let end = self.stepped([middle, to], half, x);
-        let off = [0, 1].map(|i: usize| end[i] - whole[i]);
-        let most = off[0].abs().max(off[1].abs());
-        if !most.is_finite() {
+        let passed = self.stepped(span, state, x);
+        if !passed.off.is_finite() {
             return Err(Unfollowed::Lost);
         }
-        if most > TOLERANCE {
+        if passed.off > TOLERANCE {
             let depth = depth.checked_sub(1).ok_or(Unfollowed::Lost)?;
             let half = self.advanced(x, [from, middle], state, (depth, steps))?;
             return self.advanced(x, [middle, to], &half, (depth, steps));
         }
-        let at = [0, 1].map(|i: usize| end[i] + off[i] / 15.0);
-        let slopes = match state.slopes[0].is_empty() {
-            true => state.slopes.clone(),
-            false => self.carried(x, [from, middle, to], [state.at, half, at], &state.slopes),
-        };
-        Ok(Moving { at, slopes })
-    }
-
-    /// The derivatives at the end of a span, by what is linear about the motion at its beginning, middle and end.
-    fn carried(
-        &self,
-        x: &Unknowns,
-        times: [f64; 3],
-        at: [[f64; 2]; 3],
-        slopes: &[Vec<f64>; 2],
-    ) -> [Vec<f64>; 2] {
-        let locals = [0, 1, 2].map(|i: usize| self.linear(times[i], at[i], x));
-        let step = times[2] - times[0];
-        let linear = [0, 1, 2].map(|i: usize| locals[i].0);
-        let [all, second] = [over(step, linear), over(step / 2.0, halves(linear))];
-        let mut carried = slopes.clone();
-        for k in 0..slopes[0].len() {
-            let own = [slopes[0][k], slopes[1][k]];
-            let drives = [0, 1, 2].map(|i: usize| locals[i].1[k]);
-            for (i, carried) in carried.iter_mut().enumerate() {
-                let driven = all[i][1] * drives[0] + 4.0 * second[i][1] * drives[1];
-                let last = if i == 1 { drives[2] } else { 0.0 };
-                carried[k] = all[i][0] * own[0] + all[i][1] * own[1] + step / 6.0 * (driven + last);
+        let (slopes, linear) = match state.slopes[0].is_empty() {
+            true => (state.slopes.clone(), None),
+            false => {
+                let first = state.linear.clone().unwrap_or_else(|| self.linear(from, state.at, x));
+                let second = self.linear(middle, passed.middle, x);
+                let last = self.linear(to, passed.end, x);
+                (carried(to - from, [&first, &second, &last], &state.slopes), Some(last))
             }
-        }
-        carried
+        };
+        Ok(Moving { at: passed.end, rates: passed.rates, slopes, linear })
     }
+}
+
+/// The derivatives at the end of a span, by what is linear about the motion at its beginning, middle and end.
+fn carried(step: f64, locals: [&Linear; 3], slopes: &[Vec<f64>; 2]) -> [Vec<f64>; 2] {
+    let linear = locals.map(|local| local.0);
+    let [all, second] = [over(step, linear), over(step / 2.0, halves(linear))];
+    let mut carried = slopes.clone();
+    for k in 0..slopes[0].len() {
+        let own = [slopes[0][k], slopes[1][k]];
+        let drives = locals.map(|local| local.1[k]);
+        for (i, carried) in carried.iter_mut().enumerate() {
+            let driven = all[i][1] * drives[0] + 4.0 * second[i][1] * drives[1];
+            let last = if i == 1 { drives[2] } else { 0.0 };
+            carried[k] = all[i][0] * own[0] + all[i][1] * own[1] + step / 6.0 * (driven + last);
+        }
+    }
+    carried
+}
+
+/// The time of a stage.
+pub(super) fn node(from: f64, to: f64, stage: usize) -> f64 {
+    if stage == 5 { to } else { from + NODES[stage] * (to - from) }
 }
 
 /// Of three linear laws over a span those of its second half: the one in the middle of it is between.

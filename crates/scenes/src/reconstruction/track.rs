@@ -24,7 +24,7 @@ fn sees(update: &Update) -> bool {
 
 /// From when on, in s, windows tell no outline: where a search did not come to its end, or where between windows that see there is one that does not, and nothing else answers
 /// there. The orientation of all later ones hangs on it. A window that is blind and goes on by its equations is none.
-pub(super) fn hole(answer: &Answer, when_blind: WhenBlind) -> Option<f64> {
+fn hole(answer: &Answer, when_blind: WhenBlind) -> Option<f64> {
     let updates = &answer.track.updates;
     let is_answered = |update: &Update| sees(update) && update.end != UpdateEnd::StepsSpent;
     let ends = (updates.iter().position(is_answered), updates.iter().rposition(is_answered));
@@ -41,6 +41,21 @@ pub(super) fn hole(answer: &Answer, when_blind: WhenBlind) -> Option<f64> {
         is_unanswered && !updates.iter().any(covers)
     };
     updates.iter().enumerate().find(is_hole).map(|(_, update)| update.from)
+}
+
+/// Why windows tell no outline, in words; none where they do. Between flat palms all measurements at once are asked first: where that comes to nothing, or
+/// windows contradict it, these are believed only if they pass all their tests.
+pub(super) fn no_outline(answer: &Answer, forms: &[Palm<f64>], when_blind: WhenBlind) -> Option<String> {
+    if let Some(from) = hole(answer, when_blind) {
+        return Some(format!(
+            "no outline is estimated from the windows: from {from:.3} s there is no answer"
+        ));
+    }
+    let is_flat = forms.iter().all(|form| *form == Palm::Flat);
+    let are_refuted = !answer.track.updates.is_empty() && !answer.track.is_sound();
+    (is_flat && are_refuted).then(|| {
+        "no outline is estimated: the batch estimate of all measurements is no answer, and the windows do not pass their tests".to_owned()
+    })
 }
 
 /// The value of a state or constant at a sample, from the readings or from what is told.

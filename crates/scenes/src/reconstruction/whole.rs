@@ -39,6 +39,9 @@ const SMALLER: f64 = 0.5;
 /// Of noise fewer neighbours than these count as one.
 const ALIKE: f64 = 1.5;
 
+/// What leaves less than this part of the size of the body leaves nothing of readings without noise but what the integration does.
+pub(super) const EXACT: f64 = 1e-10;
+
 /// Candidates that are less likely are left out.
 const UNLIKELY: f64 = 1e-4;
 
@@ -56,10 +59,11 @@ impl WholeRecord {
             }
             false => self.by_what_is_left(series, interrupt)?,
         };
-        weighed(candidates).map(|told| self.widened(told, is_stated))
+        let told = weighed(candidates).map(|told| self.widened(told, is_stated))?;
+        (is_stated || self.is_exact(&told.best) || self.is_spread(&told.best)).then_some(told)
     }
 
-    /// The candidates of readings whose deviation nobody states, measured by what the best of them leaves. No other body is asked for beside a series that leaves nothing.
+    /// The candidates of readings whose deviation nobody states, measured by what the best of them leaves. No other body is asked for beside a series that leaves nothing, or noise below what is believed of any reading.
     fn by_what_is_left(&mut self, first: Found, interrupt: &AtomicBool) -> Option<Vec<Found>> {
         let unstated = self.sigma;
         let mut series = first.clone();
@@ -68,7 +72,8 @@ impl WholeRecord {
             series = self.series(&series.unknowns, interrupt)?;
         }
         let left = self.left(&series);
-        if left <= NOMINAL {
+        // what is little and still a curve is one that a spline may not leave
+        if left <= NOMINAL && (self.is_exact(&series) || self.alike(&series) < ALIKE) {
             self.sigma = left;
             return Some(vec![series]);
         }
@@ -183,7 +188,7 @@ impl WholeRecord {
         let best = &told.best;
         let spread = (best.shape.chi_square / best.shape.degrees as f64).max(1.0);
         let is_noise = is_stated && self.is_explained(best.shape.chi_square, self.times.len());
-        let is_exact = !is_stated && best.misfit <= NOMINAL;
+        let is_exact = !is_stated && self.is_exact(best);
         let alike = if is_noise || is_exact { 1.0 } else { self.alike(best) };
         let factor = spread * alike;
         for found in std::iter::once(&mut told.best).chain(told.others.iter_mut().map(|(_, found)| found)) {
@@ -194,6 +199,17 @@ impl WholeRecord {
         told.best.shape.others =
             told.others.iter().map(|(probability, found)| (*probability, found.shape.clone())).collect();
         told
+    }
+
+    fn is_exact(&self, found: &Found) -> bool {
+        found.misfit <= EXACT * self.size()
+    }
+
+    /// Whether what is left counts as more independent numbers than there are unknowns. Where it does not it is a curve: nothing says how large errors are, and the
+    /// shape is another one.
+    fn is_spread(&self, found: &Found) -> bool {
+        let (samples, degrees) = (found.shape.samples as f64, found.shape.degrees as f64);
+        samples / self.alike(found) > samples - degrees
     }
 
     /// How many neighbours count as one: the sum of the autocorrelations of what is left, up to the first that is not positive.
