@@ -1,12 +1,14 @@
 //! The end of a search in a window: roughly first, then exactly, and along a valley that bends by second derivatives.
 
+use super::fit::Noise;
+use super::loss::Loss;
 use super::multiple_shooting::LAST_STEPS;
 use super::task::Task;
 use super::track::{Update, UpdateEnd};
 use super::{MovingWindow, WindowSearch};
 use std::ops::Range;
 
-/// What leaves so many times as much as an answer, as noise, or as this part of the largest reading, which a rough search may leave, is none.
+/// What leaves so many times as much as an answer, as the noise, or as this part of the largest reading, which a rough search may leave, is none.
 const FAR_FROM_ANSWER: f64 = 10.0;
 const ROUGHLY: f64 = 1e-5;
 
@@ -26,8 +28,12 @@ impl MovingWindow {
         let rough = trusting.update(&task.roughly(), state, rows, clamped);
         let read =
             rows.clone().flat_map(|row| task.readings(row)).fold(0.0, |most: f64, x| most.max(x.abs()));
-        let least = |left: f64| left.max(task.sigma).max(ROUGHLY * read);
-        if answer.is_some_and(|left| !(rough.misfit <= FAR_FROM_ANSWER * least(left))) {
+        let is_far =
+            |left: f64| !(rough.misfit <= FAR_FROM_ANSWER * left.max(task.sigma).max(ROUGHLY * read));
+        // a least error that is far above a noise that is known will not come down to it
+        let is_least = matches!(rough.end, UpdateEnd::DoesNotFit | UpdateEnd::Stuck);
+        let is_refuted = is_least && task.noise != Noise::Unstated && task.loss == Loss::default();
+        if answer.map_or(is_refuted && is_far(0.0), is_far) {
             return rough;
         }
         let is_lost = matches!(rough.end, UpdateEnd::Lost(_));

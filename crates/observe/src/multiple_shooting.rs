@@ -142,7 +142,9 @@ impl MultipleShooting {
             if task.interrupted() && !updates.is_empty() {
                 break;
             }
-            let answers = || updates.iter().filter(|update| update.is_borne_out());
+            // what lies outside of the sample box is an answer only where nothing within is one
+            let is_answer = |update: &&Update| update.is_borne_out() && outside(task, update) <= 0.0;
+            let answers = || updates.iter().filter(is_answer);
             if answers().any(|update| is_near(task, &update.estimate, &candidate.state, &[], SAME_BASIN)) {
                 continue;
             }
