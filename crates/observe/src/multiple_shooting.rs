@@ -72,7 +72,7 @@ const ENOUGH: f64 = 1e-8;
 const FAR: f64 = 0.05;
 const ENOUGH_FAR: f64 = 100.0;
 
-/// A state that is no farther than this part of the sizes from one that explains the rows is in its basin.
+/// States that are no farther from each other than this part of the sizes are in one basin: a search by segments ends before it knows its end better.
 const SAME_BASIN: f64 = 1e-2;
 
 /// A window is halved as long as a half has so many readings for each unknown.
@@ -110,7 +110,7 @@ impl MultipleShooting {
             self.candidates(task, belief, rows, clamped).into_iter().partition(|candidate| candidate.is_far);
         let mut updates = Vec::new();
         self.end_all(task, near, told, &mut updates);
-        let is_answered = |updates: &[Update]| updates.iter().any(Update::is_borne_out);
+        let is_answered = |updates: &[Update]| updates.iter().any(|update| is_answer(task, update));
         let half = rows.start..rows.start + rows.len() / 2 + 1;
         let is_long = half.len() * task.full.outputs.len() > FEWEST * task.full.states.len();
         if !is_answered(&updates) && is_long && !task.interrupted() {
@@ -142,9 +142,7 @@ impl MultipleShooting {
             if task.interrupted() && !updates.is_empty() {
                 break;
             }
-            // what lies outside of the sample box is an answer only where nothing within is one
-            let is_answer = |update: &&Update| update.is_borne_out() && outside(task, update) <= 0.0;
-            let answers = || updates.iter().filter(is_answer);
+            let answers = || updates.iter().filter(|update| is_answer(task, update));
             if answers().any(|update| is_near(task, &update.estimate, &candidate.state, &[], SAME_BASIN)) {
                 continue;
             }
@@ -190,7 +188,7 @@ impl MultipleShooting {
         for found in found {
             let state = segments.state(&found.nodes, 0)[..task.estimated()].to_vec();
             if candidates.len() < MOST_ENDS
-                && !candidates.iter().any(|other| is_near(task, &other.state, &state, &[], 1e-3))
+                && !candidates.iter().any(|other| is_near(task, &other.state, &state, &[], SAME_BASIN))
             {
                 let is_far = found.misfit / compared > FAR.max(ENOUGH_FAR * enough);
                 candidates.push(Candidate { state, steps: found.steps, refused: found.refused, is_far });
@@ -297,6 +295,11 @@ fn outside(task: &Task<'_>, update: &Update) -> f64 {
         _ => 0.0,
     };
     update.estimate.iter().enumerate().map(one).fold(0.0, f64::max)
+}
+
+/// Whether an update ends the search for others: what lies outside of the sample box is an answer only where nothing within is one.
+fn is_answer(task: &Task<'_>, update: &Update) -> bool {
+    update.is_borne_out() && outside(task, update) <= 0.0
 }
 
 /// What fits first, of it what lies in the sample box; by the least error. What fits outside of the box is given only where nothing
