@@ -28,8 +28,10 @@ impl MovingWindow {
         let rough = trusting.update(&task.roughly(), state, rows, clamped);
         let read =
             rows.clone().flat_map(|row| task.readings(row)).fold(0.0, |most: f64, x| most.max(x.abs()));
-        let is_far =
-            |left: f64| !(rough.misfit <= FAR_FROM_ANSWER * left.max(task.sigma).max(ROUGHLY * read));
+        let is_far = |left: f64| {
+            let most = FAR_FROM_ANSWER * left.max(task.sigma).max(ROUGHLY * read);
+            rough.misfit.is_nan() || rough.misfit > most
+        };
         // a least error that is far above a noise that is known will not come down to it
         let is_least = matches!(rough.end, UpdateEnd::DoesNotFit | UpdateEnd::Stuck);
         let is_refuted = is_least && task.noise != Noise::Unstated && task.loss == Loss::default();

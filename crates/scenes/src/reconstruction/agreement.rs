@@ -22,6 +22,9 @@ fn is_exact(whole: &WholeMotion) -> bool {
     !whole.stated && whole.misfit <= EXACT * size
 }
 
+/// A state of a motion at a sample.
+type OfSample = fn(&WholeSample) -> Measured;
+
 /// Whether each window meets its neighbours: one that is too far from either does not, nor one that meets none where others meet. Which of two is wrong is not known.
 fn are_at_one(updates: &[Update]) -> Vec<bool> {
     let meets = |place: usize| updates.get(place).and_then(|own| own.seam).map(|seam| !seam.is_open());
@@ -38,7 +41,7 @@ fn are_at_one(updates: &[Update]) -> Vec<bool> {
 fn farthest(names: &[&str], update: &Update, whole: &WholeMotion) -> Option<(f64, Contradiction)> {
     let row = whole.samples.binary_search_by(|sample| sample.time.total_cmp(&update.from));
     let sample = whole.samples.get(row.ok()?)?;
-    let of: [(&str, fn(&WholeSample) -> Measured); 3] =
+    let of: [(&str, OfSample); 3] =
         [("r1", |at| at.radii[0]), ("r2", |at| at.radii[1]), ("omega0", |at| at.omega0)];
     let off = of.into_iter().filter_map(|(name, of)| {
         let of_all = of(sample);

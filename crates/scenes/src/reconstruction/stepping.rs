@@ -4,13 +4,12 @@
 //! equations that are the same for all unknowns but for what drives them: these are carried by two solutions and Simpson's rule, for hundreds of unknowns at the cost of a few. They are good to a millionth, which a search
 //! needs and a bound; the motion itself is good to the tolerance.
 
-use super::record::{Followed, INPUTS, Unknowns, WholeRecord, parts};
+use super::record::{Followed, INPUTS, Unknowns, WholeRecord, node, parts};
 
 /// Both formulas differ by no more than this at the end of a span, in rad and rad/s.
 const TOLERANCE: f64 = 1e-11;
 
-/// Where in a span the rates are taken, what each takes of those before it, and what both formulas and the interpolated state in the middle of the span take of all.
-pub(super) const NODES: [f64; 6] = [0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0];
+/// What each rate takes of those before it, and what both formulas and the interpolated state in the middle of the span take of all.
 const STAGES: [[f64; 6]; 6] = [
     [0.0; 6],
     [1.0 / 5.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -203,11 +202,6 @@ fn carried(step: f64, locals: [&Linear; 3], slopes: &[Vec<f64>; 2]) -> [Vec<f64>
         }
     }
     carried
-}
-
-/// The time of a stage.
-pub(super) fn node(from: f64, to: f64, stage: usize) -> f64 {
-    if stage == 5 { to } else { from + NODES[stage] * (to - from) }
 }
 
 /// Of three linear laws over a span those of its second half: the one in the middle of it is between.
