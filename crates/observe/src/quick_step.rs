@@ -217,7 +217,7 @@ mod tests {
     }
 
     /// A driven, damped pendulum through irregular samples: what is interpolated is where the method of order eight comes to from sample to sample, with
-    /// fewer evaluations than three a sample; and four times the tolerance's fifth root makes steps longer, not samples fewer.
+    /// fewer evaluations than three a sample where six digits are asked for.
     #[test]
     fn long_steps_meet_the_samples_between() {
         let f = |time: f64, y: &[f64], dy: &mut [f64]| {
@@ -264,7 +264,8 @@ mod tests {
                 |_, _| told += 1,
             );
             let (time, stopped) = way.unwrap_err();
-            assert!(stopped == why && time <= 1.0 && told == 1, "{time} {stopped:?} {told}");
+            // the pole of what is integrated is as far from that of the equation as the tolerance moves it
+            assert!(stopped == why && time < 1.0 + 1e-6 && told == 1, "{time} {stopped:?} {told}");
         }
     }
 }
