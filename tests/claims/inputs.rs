@@ -85,6 +85,36 @@ fn unknown_signals_have_an_order() {
         refused.contains("the derivative of 'w'' is w'', and the file does not say that it is zero"),
         "{refused}"
     );
+    // no bracket and no step of a map does either
+    for (order, claim, word) in [
+        ("", "bracket(f, g, x) = [0]", ""),
+        ("", "L(bracket(f, g), x) = 0", ""),
+        ("order 1", "L(bracket(f, g), x) = 0", "proved"),
+        ("order 2", "L(bracket(f, g), x) = 0", "refuted"),
+    ] {
+        let text = format!(
+            "system \"s\" state x unknown w(t) {order} drift f x' = w input g x' = w' output x claim 1: {claim}"
+        );
+        match System::parse("test.proof", &text, Path::new("")) {
+            Ok(found) => assert_eq!(prove(&found)[0].word(), word, "{order} {claim}"),
+            Err(refused) => assert!(
+                word.is_empty() && refused.to_string().contains("derivative of 'w'' is w''"),
+                "{refused}"
+            ),
+        }
+    }
+    for (order, is_told) in [("", false), ("order 1", true)] {
+        let text = format!(
+            "system \"s\" state x unknown w(t) {order} drift f x+ = x + w output x claim 1: L(f, f, f, x) = x + 3*w + 3*w'"
+        );
+        match System::parse("test.proof", &text, Path::new("")) {
+            Ok(found) => assert!(is_told && prove(&found)[0].word() == "proved"),
+            Err(refused) => assert!(
+                !is_told && refused.to_string().contains("what 'w'' is after a step is told by w''"),
+                "{refused}"
+            ),
+        }
+    }
     for (order, claim, word) in [
         ("order 1", "L(f, f, f, x) = 0", "proved"),
         ("", "L(f, f, x) = w'", "proved"),

@@ -63,17 +63,12 @@ impl System {
     /// known signal what a file says itself never meets this (`driven.rs`), and what is asked of it from outside may; of an unknown one that
     /// is an assumption, which a statement rests on only where the file makes it (`order 1`).
     fn refuse_the_last_derivative(&self, field: &Expr, value: &Value, span: &Span) -> Result<(), Problem> {
-        let is_drift = |expr: &Expr| match &expr.kind {
-            ExprKind::Name(name) => self.field(name).is_some_and(|field| field.role == Role::Drift),
-            _ => false,
-        };
-        let moves = match &field.kind {
-            ExprKind::Call(_, fields) => fields.iter().take(2).any(is_drift),
-            _ => is_drift(field),
-        };
+        let ExprKind::Name(name) = &field.kind else { return Ok(()) };
+        let Some(drift) = self.field(name).filter(|field| field.role == Role::Drift) else { return Ok(()) };
+        let steps = drift.derivation.composes();
         let nodes = match value {
-            Value::Scalar(node) if moves => vec![*node],
-            Value::Matrix(matrix) if moves => matrix.entries.clone(),
+            Value::Scalar(node) => vec![*node],
+            Value::Matrix(matrix) => matrix.entries.clone(),
             _ => return Ok(()),
         };
         let open = self.coordinates.signals.iter().filter(|signal| signal.is_known || !signal.has_order);
@@ -88,13 +83,17 @@ impl System {
         };
         let name = self.symbol_name(symbol);
         let next = next_derivative(name);
+        let told = match steps {
+            true => format!("what '{name}' is after a step is told by {next}"),
+            false => format!("the derivative of '{name}' is {next}"),
+        };
         let (message, help) = match is_known {
             true => (
-                format!("the derivative of '{name}' is {next}, which the file does not come to"),
+                format!("{told}, which the file does not come to"),
                 format!("name {next} in the file, as in: let further = {next}"),
             ),
             false => (
-                format!("the derivative of '{name}' is {next}, and the file does not say that it is zero"),
+                format!("{told}, and the file does not say that it is zero"),
                 format!(
                     "name {next} in the file, or say how many derivatives the signal has, as in: unknown w(t) order 1"
                 ),
@@ -113,6 +112,7 @@ impl System {
                     "maps have no bracket: 'L' takes the names of maps, and what is composed with them";
                 return Err(Problem::new(&field.span, message, "this"));
             };
+            self.refuse_the_last_derivative(field, &value, span)?;
             let Some(found) = self.field(name) else {
                 return Err(self.unknown(name, &field.span, Wanted::Field));
             };
@@ -203,11 +203,7 @@ impl System {
             },
             ExprKind::Call(name, arguments) if name == "bracket" => match arguments.as_slice() {
                 [first, second] if depth < DEEPEST_BRACKET => {
-                    let (first, second) =
-                        (self.rates_of(first, depth + 1)?, self.rates_of(second, depth + 1)?);
-                    let found = self.bracket(&first, &second);
-                    self.refuse_growth(&field.span)?;
-                    Ok(found)
+                    self.bracket([first, second], depth + 1, &field.span)
                 }
                 [_, _] => {
                     let message = format!("brackets within brackets, more than {DEEPEST_BRACKET} deep");
@@ -222,7 +218,13 @@ impl System {
     }
 
     /// `[f, g]_i = L_f g_i - L_g f_i`, where both fields have derivatives.
-    fn bracket(&mut self, first: &Rates, second: &Rates) -> Rates {
+    fn bracket(&mut self, fields: [&Expr; 2], depth: usize, span: &Span) -> Result<Rates, Problem> {
+        let (first, second) = (&self.rates_of(fields[0], depth)?, &self.rates_of(fields[1], depth)?);
+        for (field, other) in fields.into_iter().zip([second, first]) {
+            let entries: Vec<NodeId> = other.values().map(|rate| rate.value).collect();
+            let components = Value::Matrix(Matrix { rows: entries.len(), columns: 1, entries });
+            self.refuse_the_last_derivative(field, &components, span)?;
+        }
         let (mut along_first, mut along_second) = (derivation_along(first), derivation_along(second));
         let moved: BTreeSet<Symbol> = first.keys().chain(second.keys()).copied().collect();
         let mut found = Rates::new();
@@ -245,7 +247,8 @@ impl System {
             guards.dedup();
             found.insert(symbol, Rate { value, guards });
         }
-        found
+        self.refuse_growth(span)?;
+        Ok(found)
     }
 
     /// `bracket(f, g)` as a column of as many entries as there are states; or `bracket(f, g, x, y)`, only those of `x` and `y`.
@@ -253,9 +256,7 @@ impl System {
         let [first, second, names @ ..] = arguments else {
             return Err(Problem::new(span, "'bracket' takes two fields", "here").help("as in bracket(f, g)"));
         };
-        let (first, second) = (self.rates_of(first, 1)?, self.rates_of(second, 1)?);
-        let rates = self.bracket(&first, &second);
-        self.refuse_growth(span)?;
+        let rates = self.bracket([first, second], 1, span)?;
         let states = self.states_of(names, span)?;
         let mut entries = Vec::with_capacity(states.len());
         for state in states {

@@ -17,6 +17,7 @@ mod bound;
 mod calibration;
 mod chi_square;
 mod correlation;
+pub mod dormand_prince;
 mod drift;
 mod ending;
 mod errors_in_variables;

@@ -73,7 +73,7 @@ const FAR: f64 = 0.05;
 const ENOUGH_FAR: f64 = 100.0;
 
 /// States that are no farther from each other than this part of the sizes are in one basin: a search by segments ends before it knows its end better.
-const SAME_BASIN: f64 = 1e-2;
+const SAME_BASIN: f64 = 1e-3;
 
 /// A window is halved as long as a half has so many readings for each unknown.
 const FEWEST: usize = 4;

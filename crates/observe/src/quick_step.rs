@@ -1,36 +1,10 @@
-//! Explicit steps without a room of their own: the pair of J. R. Dormand and P. J. Prince of orders 5 and 4 (A family of embedded Runge-Kutta
-//! formulae, 1980), with its interpolation of order 4 (E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 1993, section II.6).
+//! Steps of Dormand and Prince's pair without a room of their own.
 //!
 //! A method of order eight spends thirteen evaluations where six have no error left that doubles could tell: from one sample to the next a step is
 //! taken where the difference of both formulas is below what is tolerated, and nothing is refined ([`QuickSteps::take`]). A search does not
 //! need so much: it goes through many samples in steps as long as the tolerance allows ([`QuickSteps::go_through`]).
 
-const NODES: [f64; 7] = [0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0, 1.0];
-
-const STAGES: [[f64; 6]; 7] = [
-    [0.0; 6],
-    [1.0 / 5.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
-    [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0, 0.0, 0.0, 0.0],
-    [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0, 0.0, 0.0],
-    [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0, 0.0],
-    [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
-];
-
-/// The formula of order five minus that of order four.
-const DIFFERENCE: [f64; 7] =
-    [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
-
-/// What the rates give to the last term of the interpolation.
-const BETWEEN: [f64; 7] = [
-    -12715105075.0 / 11282082432.0,
-    0.0,
-    87487479700.0 / 32700410799.0,
-    -10690763975.0 / 1880347072.0,
-    701980252875.0 / 199316789632.0,
-    -1453857185.0 / 822651844.0,
-    69997945.0 / 29380423.0,
-];
+use super::dormand_prince::{DIFFERENCE, NODES, STAGES, between};
 
 /// A step is this part of the longest one that the error estimate allows, and no shorter or longer than these parts of the one before.
 const SAFETY: f64 = 0.9;
@@ -104,7 +78,7 @@ impl QuickSteps {
     ) -> Result<(), (f64, Stopped)> {
         let [from, .., end] = *times else { return Ok(()) };
         let (mut time, mut step, mut next, mut steps) = (from, end - from, 1, 0);
-        let mut between = Vec::with_capacity(y.len());
+        let mut there = Vec::with_capacity(y.len());
         while next < times.len() {
             steps += 1;
             if 6 * steps > most {
@@ -126,8 +100,8 @@ impl QuickSteps {
             }
             let to = if length == left { end } else { time + length };
             while next < times.len() && times[next] < to {
-                self.interpolate((times[next] - time) / length, length, y, &mut between);
-                tell(next, &between);
+                self.interpolate((times[next] - time) / length, length, y, &mut there);
+                tell(next, &there);
                 next += 1;
             }
             self.arrive(y);
@@ -159,25 +133,25 @@ impl QuickSteps {
         }
     }
 
-    /// The most that both formulas differ by at the end of a step, in parts of one or of a value; no number where one of them is none.
+    /// The most that both formulas differ by at the end of a step, in parts of one or of a value; no number where the end is none.
     fn error(&self, length: f64, y: &[f64]) -> f64 {
         let one = |i: usize| {
             let off: f64 = self.rates.iter().zip(&DIFFERENCE).map(|(rate, part)| part * rate[i]).sum();
-            (length * off).abs() / (1.0 + y[i].abs().max(self.there[i].abs()))
+            // of an infinite end any difference would be a small part
+            match self.there[i].is_finite() {
+                true => (length * off).abs() / (1.0 + y[i].abs().max(self.there[i].abs())),
+                false => f64::NAN,
+            }
         };
         (0..y.len()).map(one).fold(0.0, |most, off| if off > most || off.is_nan() { off } else { most })
     }
 
     /// The state at a part of a step that has been made from `y`.
-    fn interpolate(&self, part: f64, length: f64, y: &[f64], between: &mut Vec<f64>) {
-        between.clear();
-        let rest = 1.0 - part;
-        between.extend((0..y.len()).map(|i| {
-            let whole = self.there[i] - y[i];
-            let begin = length * self.rates[0][i] - whole;
-            let end = whole - length * self.rates[6][i] - begin;
-            let last: f64 = self.rates.iter().zip(&BETWEEN).map(|(rate, part)| part * rate[i]).sum();
-            y[i] + part * (whole + rest * (begin + part * (end + rest * length * last)))
+    fn interpolate(&self, part: f64, length: f64, y: &[f64], there: &mut Vec<f64>) {
+        there.clear();
+        there.extend((0..y.len()).map(|i| {
+            let rates = std::array::from_fn(|stage| self.rates[stage][i]);
+            between(part, length, [y[i], self.there[i]], rates)
         }));
     }
 
@@ -247,6 +221,24 @@ mod tests {
                 let off = (0..2).map(|i| (there[i] - state[i]).abs()).fold(0.0, f64::max);
                 assert!(off < 20.0 * tolerance, "{pair:?}: {off:e}");
             }
+        }
+    }
+
+    /// A step to infinity is none, however little both formulas differ there; no way is gone where there is one sample or none.
+    #[test]
+    fn nothing_is_told_at_infinity_or_of_no_way() {
+        let away = |_: f64, _: &[f64], dy: &mut [f64]| dy[0] = 1e300;
+        let mut y = [f64::MAX];
+        assert!(!QuickSteps::default().take(&away, 0.0, 1e9, &mut y, 1e-6));
+        let way = QuickSteps::default().go_through(&away, &[0.0, 1e9], &mut y, (1e-6, 10_000), |_, _| {
+            panic!("nothing is there");
+        });
+        assert!(way.is_err() && y == [f64::MAX]);
+        for times in [&[][..], &[1.0]] {
+            let way = QuickSteps::default().go_through(&away, times, &mut y, (1e-6, 10_000), |_, _| {
+                panic!("no sample follows");
+            });
+            assert_eq!(way, Ok(()));
         }
     }
 

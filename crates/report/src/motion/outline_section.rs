@@ -4,7 +4,8 @@ use crate::motion::answers::Observed;
 use crate::motion::outline_plot::{band_picture, outline_picture};
 use crate::motion::reconstruction::{
     EXPLAINED, apart_in_words, contradiction_in_words, convexity_in_words, from_in_words, gaps, length,
-    misfit_in_words, model_in_words, reconstruction, sizes_in_words, truth, widened_in_words, widest,
+    misfit_in_words, model_in_words, no_shape_in_words, reconstruction, sizes_in_words, truth,
+    widened_in_words, widest,
 };
 use crate::motion::shape::support_error;
 use maud::{Markup, PreEscaped, html};
@@ -16,7 +17,7 @@ pub(super) fn shape_section(observed: &Observed<'_>) -> Markup {
         let why = found.contradiction.iter().map(contradiction_in_words);
         let why: Vec<String> = why.chain(found.apart.iter().map(apart_in_words)).collect();
         return html! {
-            p.remark { "The shape is not estimated" @for why in &why { "; " (why) } "." }
+            p.remark { "Shape: " (no_shape_in_words(found)) @for why in &why { "; " (why) } "." }
         };
     };
     let truth = truth(observed.experiment);

@@ -90,12 +90,20 @@ pub(super) fn from_in_words(found: &Reconstruction) -> String {
     }
 }
 
+/// That there is no shape: where something was seen of the body, remarks say why.
+pub(super) fn no_shape_in_words(found: &Reconstruction) -> &'static str {
+    match found.track.instants.iter().any(|at| at.seen) {
+        true => "no estimate",
+        false => "no estimate: no sample is observable",
+    }
+}
+
 /// The shape, as lines.
 pub(super) fn shape_text(experiment: &Experiment, answers: &[Answer]) -> String {
     let mut text = String::new();
     let Some(found) = reconstruction(answers) else { return text };
     let Some(shape) = &found.shape else {
-        let _ = writeln!(text, "\nshape: no estimate");
+        let _ = writeln!(text, "\nshape: {}", no_shape_in_words(found));
         let why = found.contradiction.iter().map(contradiction_in_words);
         let why = why.chain(found.apart.iter().map(apart_in_words));
         text.extend(why.map(|why| format!("  {why}\n")));

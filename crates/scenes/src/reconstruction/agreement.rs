@@ -2,7 +2,7 @@
 
 use super::super::recovered::{Contradiction, WholeMotion, WholeSample};
 use super::super::run::Answer;
-use super::whole::EXACT;
+use super::super::simulation::NOMINAL;
 use palmistry_bodies::shape::Measured;
 use palmistry_observe::{Seam, Update};
 
@@ -12,15 +12,8 @@ const CERTAIN: f64 = 5.0;
 /// What interpolation between samples leaves of a value, in parts of the largest over the record: the readings that drive the model are known at samples only.
 const COMPUTED: f64 = 1e-7;
 
-/// The same across a kink of the body's curvature, which the torques show: only readings without noise see it.
+/// The same across a kink of the body's curvature, which the torques show: what a motion that leaves nothing of readings without stated noise is not held against.
 const KINKED: f64 = 1e-4;
-
-/// Whether a motion leaves nothing of readings whose noise nobody states.
-fn is_exact(whole: &WholeMotion) -> bool {
-    let size =
-        whole.samples.iter().flat_map(|at| at.radii).map(|radius| radius.value.abs()).fold(0.0, f64::max);
-    !whole.stated && whole.misfit <= EXACT * size
-}
 
 /// A state of a motion at a sample.
 type OfSample = fn(&WholeSample) -> Measured;
@@ -48,7 +41,8 @@ fn farthest(names: &[&str], update: &Update, whole: &WholeMotion) -> Option<(f64
         let most = whole.samples.iter().map(|at| of(at).value.abs()).fold(0.0, f64::max);
         let place = names.iter().position(|other| *other == name)?;
         let by_window = Measured { value: update.estimate[place], deviation: update.deviations[place] };
-        let computed = if is_exact(whole) { KINKED * most } else { COMPUTED * most };
+        let is_exact = !whole.stated && whole.misfit <= NOMINAL;
+        let computed = if is_exact { KINKED * most } else { COMPUTED * most };
         let deviation = by_window.deviation.hypot(of_all.deviation).hypot(computed);
         let off = (by_window.value - of_all.value).abs() / deviation;
         let name = name.to_owned();
@@ -57,12 +51,8 @@ fn farthest(names: &[&str], update: &Update, whole: &WholeMotion) -> Option<(f64
     off.max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// What windows that fit and meet their neighbours contradict most of a motion; none where they bear it out. A motion that leaves nothing of readings whose noise nobody
-/// states is contradicted by none: what windows say beside it is what interpolation makes of the readings that drive their model.
+/// What windows that fit and meet their neighbours contradict most of a motion; none where they bear it out.
 pub(super) fn contradiction(names: &[&str], answer: &Answer, whole: &WholeMotion) -> Option<Contradiction> {
-    if is_exact(whole) {
-        return None;
-    }
     let updates = &answer.track.updates;
     let windows = updates.iter().zip(are_at_one(updates));
     let at_one = windows.filter(|(update, at_one)| *at_one && update.is_borne_out());

@@ -5,17 +5,15 @@ use super::law::{PalmsAt, Pose, pose};
 use num_dual::{Derivative, DualSVec64};
 use palmistry_bodies::shape::{ShapeEstimate, SupportFunction};
 use palmistry_observe::Signals;
+use palmistry_observe::dormand_prince::NODES;
 use std::collections::HashMap;
 
 /// Pose and its consequences are differentiated by `[h, h', h'']` at both contacts, the body's rate and its radius of gyration.
 pub(super) const INPUTS: usize = 8;
 
-/// Where in a span a step asks for the palms, in parts of it: the nodes of the pair of J. R. Dormand and P. J. Prince.
-const NODES: [f64; 6] = [0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0];
-
 /// The time of a node.
 pub(super) fn node(from: f64, to: f64, place: usize) -> f64 {
-    if place == 5 { to } else { from + NODES[place] * (to - from) }
+    if NODES[place] == 1.0 { to } else { from + NODES[place] * (to - from) }
 }
 
 /// A whole record. SI units.

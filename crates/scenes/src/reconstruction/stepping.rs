@@ -5,31 +5,10 @@
 //! needs and a bound; the motion itself is good to the tolerance.
 
 use super::record::{Followed, INPUTS, Unknowns, WholeRecord, node, parts};
+use palmistry_observe::dormand_prince::{DIFFERENCE, STAGES, between};
 
 /// Both formulas differ by no more than this at the end of a span, in rad and rad/s.
 const TOLERANCE: f64 = 1e-11;
-
-/// What each rate takes of those before it, and what both formulas and the interpolated state in the middle of the span take of all.
-const STAGES: [[f64; 6]; 6] = [
-    [0.0; 6],
-    [1.0 / 5.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
-    [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0, 0.0, 0.0, 0.0],
-    [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0, 0.0, 0.0],
-    [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0, 0.0],
-];
-const END: [f64; 7] = [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0, 0.0];
-const DIFFERENCE: [f64; 7] =
-    [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
-const MIDDLE: [f64; 7] = [
-    6025192743.0 / 60171106304.0,
-    0.0,
-    51252292925.0 / 130801643196.0,
-    -2691868925.0 / 90256659456.0,
-    187940372067.0 / 3189068634112.0,
-    -1776094331.0 / 39487288512.0,
-    11237099.0 / 470086768.0,
-];
 
 /// A span is halved this often at most.
 const DEPTH: u32 = 16;
@@ -136,22 +115,20 @@ impl WholeRecord {
     /// A span in one step.
     fn stepped(&self, [from, to]: [f64; 2], state: &Moving, x: &Unknowns) -> Passed {
         let step = to - from;
-        let mut rates = [[0.0; 2]; 7];
-        rates[0] = state.rates;
-        let sum = |rates: &[[f64; 2]; 7], parts: &[f64], i: usize| -> f64 {
-            step * parts.iter().zip(rates).map(|(part, rate)| part * rate[i]).sum::<f64>()
-        };
-        let plus =
-            |rates: &[[f64; 2]; 7], parts: &[f64]| [0, 1].map(|i: usize| state.at[i] + sum(rates, parts, i));
-        for stage in 1..6 {
-            let there = plus(&rates, &STAGES[stage]);
-            rates[stage] = self.rates(node(from, to, stage), there, x);
+        let mut rates = [state.rates; 7];
+        let mut end = state.at;
+        for stage in 1..7 {
+            let sum = |i: usize| -> f64 { (0..stage).map(|k| STAGES[stage][k] * rates[k][i]).sum() };
+            end = [0, 1].map(|i: usize| state.at[i] + step * sum(i));
+            rates[stage] = self.rates(node(from, to, stage), end, x);
         }
-        let end = plus(&rates, &END);
-        rates[6] = self.rates(to, end, x);
-        let off = [0, 1].map(|i: usize| sum(&rates, &DIFFERENCE, i).abs());
-        let off = if off[0].is_nan() || off[1].is_nan() { f64::NAN } else { off[0].max(off[1]) };
-        Passed { middle: plus(&rates, &MIDDLE), end, rates: rates[6], off }
+        let off = [0, 1].map(|i: usize| {
+            step * rates.iter().zip(&DIFFERENCE).map(|(rate, part)| part * rate[i]).sum::<f64>()
+        });
+        let off =
+            if off.iter().all(|off| off.is_finite()) { off[0].abs().max(off[1].abs()) } else { f64::NAN };
+        let halfway = |i: usize| between(0.5, step, [state.at[i], end[i]], rates.map(|rate| rate[i]));
+        Passed { middle: [halfway(0), halfway(1)], end, rates: rates[6], off }
     }
 
     /// The state at the end of a span, which may be halved so often and take so many steps.

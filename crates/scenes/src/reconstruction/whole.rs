@@ -40,7 +40,7 @@ const SMALLER: f64 = 0.5;
 const ALIKE: f64 = 1.5;
 
 /// What leaves less than this part of the size of the body leaves nothing of readings without noise but what the integration does.
-pub(super) const EXACT: f64 = 1e-10;
+const EXACT: f64 = 1e-10;
 
 /// Candidates that are less likely are left out.
 const UNLIKELY: f64 = 1e-4;
