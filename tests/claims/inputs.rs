@@ -110,7 +110,7 @@ fn unknown_signals_have_an_order() {
         match System::parse("test.proof", &text, Path::new("")) {
             Ok(found) => assert!(is_told && prove(&found)[0].word() == "proved"),
             Err(refused) => assert!(
-                !is_told && refused.to_string().contains("what 'w'' is after a step is told by w''"),
+                !is_told && refused.to_string().contains("what 'w'' is after a step is given by w''"),
                 "{refused}"
             ),
         }

@@ -8,7 +8,7 @@
 use super::elaborate::{LARGEST_GRAPH, Wanted};
 use super::error::Problem;
 use super::model::{Matrix, Role, System, Value};
-use super::unknowns::next_derivative;
+use super::unknowns::{Signal, next_derivative};
 use palmistry_math::expression::syntax::{Expr, ExprKind, Span};
 use palmistry_math::expression::{Derivation, Guard, NodeId, Symbol};
 use std::collections::{BTreeMap, BTreeSet};
@@ -71,7 +71,9 @@ impl System {
             Value::Matrix(matrix) => matrix.entries.clone(),
             _ => return Ok(()),
         };
-        let open = self.coordinates.signals.iter().filter(|signal| signal.is_known || !signal.has_order);
+        // what a known signal is after a step is a symbol of its own, made where it is met
+        let is_open = |signal: &&Signal| if signal.is_known { !steps } else { !signal.has_order };
+        let open = self.coordinates.signals.iter().filter(is_open);
         let last: Vec<(Symbol, bool)> =
             open.filter_map(|signal| Some((*signal.chain.last()?, signal.is_known))).collect();
         if last.is_empty() {
@@ -84,7 +86,7 @@ impl System {
         let name = self.symbol_name(symbol);
         let next = next_derivative(name);
         let told = match steps {
-            true => format!("what '{name}' is after a step is told by {next}"),
+            true => format!("what '{name}' is after a step is given by {next}"),
             false => format!("the derivative of '{name}' is {next}"),
         };
         let (message, help) = match is_known {

@@ -246,7 +246,7 @@ mod tests {
     #[test]
     fn nothing_is_told_beyond_a_pole() {
         let pole = |_: f64, y: &[f64], dy: &mut [f64]| dy[0] = y[0] * y[0];
-        for (most, why) in [(100_000, Stopped::TooShort), (60, Stopped::Spent)] {
+        for (most, why, from) in [(100_000, Stopped::TooShort, 1.0 - 1e-3), (60, Stopped::Spent, 0.0)] {
             let mut told = 0;
             let way = QuickSteps::default().go_through(
                 &pole,
@@ -257,7 +257,8 @@ mod tests {
             );
             let (time, stopped) = way.unwrap_err();
             // the pole of what is integrated is as far from that of the equation as the tolerance moves it
-            assert!(stopped == why && time < 1.0 + 1e-6 && told == 1, "{time} {stopped:?} {told}");
+            let is_there = stopped == why && (from..1.0 + 1e-6).contains(&time);
+            assert!(is_there && told == usize::from(time >= 0.5), "{time} {stopped:?} {told}");
         }
     }
 }
