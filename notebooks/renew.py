@@ -3,7 +3,7 @@
     python notebooks/renew.py [--check] [NAME...]
 
 Each `NAME.py` here (percent format) becomes `NAME.ipynb` with all outputs and pictures. What depends on the machine or the day is left out: identities of
-cells are their places, there are no times, and cells tagged `times` keep no output. Who renews what has not changed gets the same bytes; with `--check`
+cells are their places, there are no times, cells tagged `times` keep no output, and a place in a picture is told to a hundredth of a point. Who renews what has not changed gets the same bytes; with `--check`
 nothing is written, and the exit status is 1 where bytes differ or a notebook fails. Needs what `requirements.txt` names and the program.
 """
 
@@ -33,6 +33,12 @@ def joined(outputs):
     return found
 
 
+def rounded(picture):
+    """A picture whose lines do not show what rounding an estimate differently comes to."""
+    lines = re.compile(r' d="[^"]*"')
+    return lines.sub(lambda line: re.sub(r"\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}".rstrip("0").rstrip("."), line[0]), picture)
+
+
 def executed(source):
     """The notebook of a script with its outputs, as text."""
     notebook = jupytext.read(source)
@@ -44,6 +50,8 @@ def executed(source):
                 cell.outputs = []
             cell.outputs = joined(cell.outputs)
             for output in cell.outputs:
+                pictures = output.get("data", {})
+                pictures.update({kind: rounded(text) for kind, text in pictures.items() if kind == "image/svg+xml"})
                 output.pop("metadata", None) if output.output_type == "stream" else output.update(metadata={})
                 if output.output_type == "stream" and output.name == "stderr":
                     raise RuntimeError(f"{source.name}, cell {place}, says on standard error: {output.text}")
