@@ -7,31 +7,47 @@
     system.eval("L(f, f, phi)", at={"phi": "1/3", "omega": 2}, digits=40)
     system.verdicts(states)                         # numpy in, numpy out
     system.certify(boxes=1000)                      # full rank on whole boxes
+    system.observability(), system.identifiability(globally=True)   # tables
     palmistry.observe("scene.toml")                 # observers, on simulated or recorded measurements
-    palmistry.from_sympy(states, fields, outputs)   # a proof file from SymPy expressions
+    palmistry.observe(system, frame, noise=0.01)    # the same of a system at hand and a DataFrame
+    palmistry.System.from_function(f, h, states="phi, omega")       # of Python functions; also of SymPy's and CasADi's expressions
+    palmistry.import_model("model.xml")             # a model of another program
 
 `palmistry.recheck` (a second checker) and `palmistry.cluster` (sweeps over many machines) need nothing of this, and work from the source
 tree too, where nothing is compiled.
 """
 
 _HOMES = {
+    "Accessibility": "answers",
     "Certificate": "answers",
     "Claim": "answers",
     "Claims": "answers",
     "Error": "errors",
     "EvaluationError": "errors",
+    "Map": "answers",
     "Observation": "answers",
     "Page": "answers",
+    "Printed": "program",
     "Rank": "answers",
     "ReadError": "errors",
+    "Recheck": "answers",
+    "SingularSet": "answers",
+    "Solutions": "answers",
     "System": "system",
     "Table": "tables",
     "Value": "answers",
     "Verdicts": "answers",
     "from_casadi": "translation",
+    "from_function": "traced",
     "from_sympy": "translation",
+    "import_model": "system",
     "latex": "system",
-    "observe": "system",
+    "observe": "observing",
+    "recheck_file": "system",
+    "run": "program",
+    "stream": "observing",
+    "sweep": "cluster",
+    "threads": "system",
     "verify": "system",
 }
 

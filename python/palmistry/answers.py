@@ -123,12 +123,50 @@ class Claims(Answer, Sequence):
         names = ("id", "verdict", "expected", "ok", "statement", "line")
         return Table({name: numpy.array([claim.json[name] for claim in self]) for name in names})
 
+    @cached_property
+    def evidence(self) -> str:
+        """What the verdicts rest on, as a verdict file (JSON): what `palmistry prove --verdicts` writes, for `palmistry recheck`; where `prove(evidence=True)` has kept it."""
+        text = self._found.verdicts()
+        if len(self) and not json.loads(text)["verdicts"]:
+            from .errors import Error
+
+            raise Error("what the verdicts rest on was not kept", "ask prove(evidence=True)")
+        return text
+
+    def recheck(self, *, proofs: str = ".", seed: int = 1) -> Recheck:
+        """The verdicts, evaluated again by the small checker that shares nothing with the engines. It reads the proof file itself: the system has to come from one.
+
+        proofs: the folder from which the name of that file is read. seed: of the states at which proofs are tried.
+        """
+        from .system import rechecked
+
+        return rechecked(self.evidence, proofs, seed)
+
+    def to_latex(self) -> str:
+        """The claims as a table in LaTeX: a row a claim, id, statement and verdict."""
+        return _tabular(
+            ("claim", "statement", "verdict"),
+            [(_plain(claim.id), f"${claim.latex}$" if claim.latex else _plain(claim.statement), claim.verdict) for claim in self],
+        )
+
     def __repr__(self) -> str:
         wrong = [claim.id for claim in self if not claim.ok]
         return f"<{len(self)} claims, {'all as expected' if not wrong else 'not as expected: ' + ', '.join(wrong)}>"
 
     def _repr_html_(self) -> str:
         return self._found.html()
+
+
+def _plain(text: str) -> str:
+    """A text as LaTeX prints it, letter by letter."""
+    special = {"\\": r"\textbackslash{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}", **{sign: f"\\{sign}" for sign in "#$%&_{}"}}
+    return "".join(special.get(sign, sign) for sign in text)
+
+
+def _tabular(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table in LaTeX, with the rules of the package booktabs."""
+    lines = [f"\\begin{{tabular}}{{{'l' * len(heads)}}}", r"\toprule", " & ".join(heads) + r" \\", r"\midrule"]
+    return "\n".join([*lines, *(" & ".join(row) + r" \\" for row in rows), r"\bottomrule", r"\end{tabular}"])
 
 
 class Rank(Answer):
@@ -172,6 +210,55 @@ class Rank(Answer):
         rows = self.branches[0]["unknowns"]
         return Table({key: numpy.array([row[key] for row in rows]) for key in ("name", "kind", "verdict")})
 
+    @property
+    def identifiable_functions(self) -> list[str] | None:
+        """Functions of the unobservable unknowns that are locally identifiable, in the language; None where they were not looked for or not all were found."""
+        found = self.branches[0].get("unseen_fields")
+        if found is None or found["cut_off"] or found["functions_missing"]:
+            return [] if self.generic == self.dimension else None
+        return [function["text"] for function in found["functions"]]
+
+    @property
+    def unobservable_directions(self) -> list[dict[str, str]] | None:
+        """Vector fields along which no output changes, each as its components by unknown, in the language; None where they were not looked for or not all were
+        found."""
+        found = self.branches[0].get("unseen_fields")
+        if found is None or found["cut_off"] or found["fields_missing"]:
+            return [] if self.generic == self.dimension else None
+        return [field["components"] for field in found["fields"]]
+
+    def to_latex(self) -> str:
+        """The unknowns with their verdicts as a table in LaTeX."""
+        from .system import latex
+
+        rows = self.branches[0]["unknowns"]
+        return _tabular(("unknown", "kind", "verdict"), [(f"${latex(row['name'])}$", row["kind"], row["verdict"]) for row in rows])
+
+    def plot(self, ax: Any = None) -> Any:
+        """The standard deviation of each unknown, normalised by its prior one: median and worst of the sampled states, on a logarithmic scale, what is unobservable at the
+        right edge. `ax`: matplotlib axes, made unless given and returned."""
+        import numpy
+
+        found = self.branches[0].get("standard_deviations")
+        if not found:
+            from .errors import Error
+
+            raise Error("no states were sampled, and there is nothing to draw", "ask rank(samples=1000)")
+        ax = ax or _axes()
+        rows = found["of"]
+        places = numpy.arange(len(rows))[::-1]
+        known = [row[key] for row in rows for key in ("median", "worst") if row[key] is not None]
+        edge = 10 * max([*known, 1.0])
+        for key, marker in (("median", "o"), ("worst", "|")):
+            values = [edge if row[key] is None else row[key] for row in rows]
+            ax.plot(values, places, marker, label=key)
+        ax.set_xscale("log")
+        ax.axvline(edge, linestyle=":", color="0.5")
+        ax.set_yticks(places, [row["state"] for row in rows])
+        ax.set_xlabel("standard deviation over the prior one (dotted: unobservable)")
+        ax.legend()
+        return ax
+
     @cached_property
     def states(self) -> Table | None:
         """A row a sampled state, where `table=True` asked for it: index, rank (-1 at a pole), certified, smallest_singular_value,
@@ -185,6 +272,108 @@ class Rank(Answer):
 
     def _repr_html_(self) -> str:
         return self._found.html()
+
+
+class Solutions(Answer):
+    """How many values of each unknown give the same outputs."""
+
+    @property
+    def unknowns(self) -> Table:
+        """A row an unknown: name, kind, values (0 where undecided, infinite where there are infinitely many), verdict ('proved', 'computed' or 'undecided')."""
+        import numpy
+
+        rows = self.json["unknowns"]
+        values = [numpy.inf if row["values"] == "infinity" else row["values"] or 0 for row in rows]
+        columns = {key: numpy.array([row[key] for row in rows]) for key in ("name", "kind")}
+        return Table({**columns, "values": numpy.array(values, dtype=float), "verdict": numpy.array([row["verdict"] for row in rows])})
+
+    def __repr__(self) -> str:
+        values = [f"{row['name']} {row['values'] or '?'}" for row in self.json["unknowns"]]
+        return f"<solutions: {', '.join(values)}>"
+
+
+class SingularSet(Answer):
+    """The sets on which the rank drops, each by its equations, with a proof that it drops nowhere else where there is one."""
+
+    @cached_property
+    def page(self) -> Page:
+        """The page with the sets and their proof."""
+        return Page(self._found.page())
+
+    def _repr_html_(self) -> str:
+        return self.page._repr_html_()
+
+
+class Accessibility(Answer):
+    """Whether the drift and the inputs can move the state in every direction."""
+
+
+class Recheck(Answer):
+    """What a checker has found of verdicts that it evaluated again."""
+
+    @property
+    def ok(self) -> bool:
+        """Whether nothing was contradicted."""
+        return self.json["ok"]
+
+    @property
+    def table(self) -> Table:
+        """A row a verdict: file, id, kind, finding, reason."""
+        import numpy
+
+        names = ("file", "id", "kind", "finding", "reason")
+        return Table({name: numpy.array([row[name] for row in self.json["verdicts"]]) for name in names})
+
+
+class Map:
+    """How well unknowns are observable over two coordinates."""
+
+    def __init__(self, x: str, y: str, grids: tuple[Any, Any], deviations: dict[str, Any]) -> None:
+        #: The names of the coordinates.
+        self.x, self.y = x, y
+        #: Their values, of shape (columns,) and (rows,).
+        self.grids = grids
+        #: By unknown its standard deviation over its prior one, of shape (rows, columns): infinite where it is unobservable, NaN at a pole.
+        self.deviations = deviations
+
+    @property
+    def worst(self) -> numpy.ndarray:
+        """That of the least observable unknown, of shape (rows, columns); NaN at a pole."""
+        import numpy
+
+        return numpy.max(list(self.deviations.values()), axis=0)
+
+    def plot(self, ax: Any = None, of: str | None = None) -> Any:
+        """Draws it by matplotlib, on a logarithmic scale; what is unobservable is black. of: an unknown, the least observable one of each state unless given."""
+        import numpy
+
+        ax = ax or _axes()
+        values = self.worst if of is None else self.deviations[of]
+        finite = values[numpy.isfinite(values)]
+        shown = numpy.log10(numpy.where(numpy.isfinite(values), values, numpy.nan))
+        import matplotlib
+
+        scale = matplotlib.colormaps["viridis"].with_extremes(bad="white", over="black")
+        low, high = (numpy.log10(finite.min()), numpy.log10(finite.max())) if finite.size else (0.0, 1.0)
+        shown = numpy.where(numpy.isinf(values), high + 1 + abs(high), shown)
+        drawn = ax.pcolormesh(*self.grids, shown, cmap=scale, vmin=low, vmax=max(high, low + 1e-9), shading="nearest")
+        bar = ax.figure.colorbar(drawn, ax=ax, extend="max")
+        bar.set_label(f"log10 of the standard deviation over the prior one: {of or 'the least observable unknown'}")
+        ax.set_xlabel(self.x)
+        ax.set_ylabel(self.y)
+        return ax
+
+    def __repr__(self) -> str:
+        return f"<map over {self.x} and {self.y}: {len(self.grids[1])} x {len(self.grids[0])} states>"
+
+
+def _axes() -> Any:
+    """New axes of matplotlib."""
+    try:
+        import matplotlib.pyplot as pyplot
+    except ImportError as why:
+        raise ImportError("pictures need matplotlib: pip install 'palmistry[plot]'") from why
+    return pyplot.subplots()[1]
 
 
 class Value:
@@ -225,7 +414,7 @@ class Value:
     @property
     def decimal(self) -> Decimal:
         """The value as a decimal number with all digits; of a matrix there is none."""
-        return Decimal(self.value)
+        return Decimal(str(self.value))
 
     def to_numpy(self) -> numpy.ndarray:
         """The nearest doubles: shape () of a number, (rows, columns) of a matrix."""
@@ -234,7 +423,7 @@ class Value:
         return numpy.array(self.value, dtype=float)
 
     def __float__(self) -> float:
-        return float(self.value)
+        return float(str(self.value))
 
     def __str__(self) -> str:
         if isinstance(self.value, str):
@@ -314,12 +503,12 @@ def _framed(page: str, height: int = 600) -> str:
 
 
 class Observation(Answer):
-    """What observers made of a scene."""
+    """What observers made of measurements."""
 
     @property
     def observers(self) -> list[dict[str, Any]]:
-        """What each method found: updates, end, fit."""
-        return self.json["observers"]
+        """What each method found: updates, end, fit. Of slow motion and in space there are none."""
+        return self.json.get("observers", [])
 
     def _table(self, name: str) -> Table | None:
         columns = self._found.table(name)
@@ -347,16 +536,77 @@ class Observation(Answer):
         """The outline of a body, a row a normal (rad): support radius, band, point; None where nothing was seen of it."""
         return self._table("outline")
 
+    @property
+    def residuals(self) -> Table | None:
+        """What the model expects minus what was measured, a row a sample: time (s), and each output in its unit."""
+        columns = self._found.residuals()
+        return None if columns is None else Table(columns)
+
+    @property
+    def updates(self) -> list[dict[str, Any]]:
+        """The windows of the method that is shown, each with its estimate, its standard deviations, how it ended and its test of fit."""
+        shown = next((observer for observer in self.observers if observer.get("updates")), None)
+        return shown["updates"] if shown else []
+
+    @property
+    def estimates(self) -> Table:
+        """What was sought, at the beginning of the first window: name, estimate, deviation (a standard deviation; infinite where it is unobservable)."""
+        import numpy
+
+        states = self.updates[0]["states"] if self.updates else {}
+        names = [name for name in self._found.sought() if name in states]
+        bounds = [numpy.inf if states[name]["bound"] is None else states[name]["bound"] for name in names]
+        values = [states[name]["recovered"] for name in names]
+        return Table({"name": numpy.array(names), "estimate": numpy.array(values, dtype=float), "deviation": numpy.array(bounds, dtype=float)})
+
+    def covariance(self, window: int = 0) -> numpy.ndarray | None:
+        """The covariance of what is sought at the beginning of a window, of shape (sought, sought), in the order of `estimates`; None where there is no such window, or where something is
+        unobservable in it."""
+        return self._found.covariance(window)
+
+    @property
+    def fits(self) -> bool:
+        """Whether each window converged and its residuals are what the noise explains."""
+        def passes(update: dict[str, Any]) -> bool:
+            return update["standing"] == "converged" and bool(update["fit"]) and update["fit"]["fits"]
+
+        return bool(self.updates) and all(map(passes, self.updates))
+
     @cached_property
     def page(self) -> Page:
         """The page with pictures."""
-        return Page(self._found.page())
+        page = self._found.page()
+        if page is None:
+            from .errors import Error
+
+            raise Error("several systems side by side have no page", "text and json say all there is")
+        return Page(page)
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws what was estimated over time, an axis a state with a band of two standard deviations, by matplotlib. axes: as many as are sought, made unless given and returned."""
+        from .errors import Error
+
+        track, names = self.track, self._found.sought()
+        if track is None or not names:
+            raise Error("there is no track to draw", "of slow motion and in space the page has the pictures: .page")
+        if axes is None:
+            import matplotlib.pyplot as pyplot
+
+            axes = pyplot.subplots(len(names), 1, sharex=True, squeeze=False, figsize=(6.4, 1.8 * len(names) + 0.6))[1][:, 0]
+        for ax, name in zip(axes, names):
+            value, bound = track[name], track[f"{name}_bound"]
+            ax.fill_between(track["time"], value - 2 * bound, value + 2 * bound, alpha=0.3)
+            ax.plot(track["time"], value)
+            ax.set_ylabel(name)
+        axes[-1].set_xlabel("time, s")
+        return axes
 
     def __repr__(self) -> str:
-        return f"<observation by {', '.join(observer['method'] for observer in self.observers)}>"
+        methods = ", ".join(observer["method"] for observer in self.observers)
+        return f"<observation by {methods}>" if methods else "<observation>"
 
     def _repr_html_(self) -> str:
-        return self.page._repr_html_()
+        return self.page._repr_html_() if self._found.page() is not None else f"<pre>{escape(self.text)}</pre>"
 
 
 class Page:

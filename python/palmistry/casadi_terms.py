@@ -104,6 +104,7 @@ class Tape:
         self._abbreviated: list[tuple[str, Term]] = []
         named = isinstance(fields, Mapping) and all(isinstance(key, str) for key in fields)
         read = self._read
+        self.fields: Any
         if named:
             self.fields = {name: self._field(rates) for name, rates in fields.items()}
         elif isinstance(fields, Mapping):

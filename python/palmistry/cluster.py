@@ -1,8 +1,11 @@
 """A sweep over many machines: the shards of a command that are missing are submitted to a Dask cluster, and their parts merged.
 
     pip install 'palmistry[dask]'
-    from palmistry.cluster import sweep
-    answer = sweep(["rank", "mysystem.proof", "--samples", "1000000000"], shards=640, folder="/shared/parts", client=client)
+    import palmistry
+    system = palmistry.System.read("/shared/mysystem.proof")
+    answer = palmistry.sweep(system, samples=1e9, client=client)
+
+and of any command, `palmistry.cluster.sweep_command(["observe", "scene.toml"], shards=640, folder="/shared/parts", client=client)`.
 
 `client` is any `dask.distributed.Client`: of a cluster on this machine, or of SLURM or PBS by dask-jobqueue. A task runs the program in
 a process of its own, on a folder that all machines see, and returns the name of its file and nothing else: no result passes the
@@ -48,7 +51,7 @@ def missing(command, shards, folder, program="palmistry"):
     return json.loads(text)["missing"]
 
 
-def sweep(command, shards, folder, client, program="palmistry", merge=(), threads=1, retries=5, rounds=3, progress=True):
+def sweep_command(command, shards, folder, client, program="palmistry", merge=(), threads=1, retries=5, rounds=3, progress=True):
     """Does what is missing of `command` in so many shards on a cluster, and merges: the JSON of the answer, as an object.
 
     command: the words of the command, as ["rank", "mysystem.proof", "--samples", "1000000"], or ["observe", "scene.toml"] for the studies
@@ -77,3 +80,49 @@ def sweep(command, shards, folder, client, program="palmistry", merge=(), thread
             print(file=sys.stderr)
     text, _ = run(program, [*command, *merge, "--merge", folder, "--json"])
     return json.loads(text)
+
+
+class _Merged:
+    """An answer of the program, as the compiled half would hand it over."""
+
+    def __init__(self, found, text):
+        self._found, self._text = json.dumps(found), text
+
+    def json(self):
+        return self._found
+
+    def text(self):
+        return self._text
+
+    def html(self):
+        from html import escape
+
+        return f"<pre>{escape(self._text)}</pre>"
+
+    def table(self):
+        return None
+
+
+def sweep(system, samples, *, client, shards=None, folder=None, seed=1, at=None, where=(), order=None, threads=1, progress=True):
+    """The rank of the observability codistribution at very many sampled states, by the workers of a Dask cluster: the `Rank` of a single run, to the last bit.
+
+    system: one that was read from a file, or the path of one, where all workers see it. samples: how many states are drawn. client: a `dask.distributed.Client`. shards: into how many parts the
+    work is cut, eight for each worker's thread unless given. folder: where the parts are kept, which all workers see, the proof file's name with `.parts` unless given; what is there already is not done
+    again, so that a sweep that was ended goes on where it was. seed, at, where, order: as in `System.rank`. threads: of each process. A worker that dies takes nothing with it: its shard is done again.
+    """
+    from .answers import Rank
+    from .program import path
+    from .system import _pairs, _several
+
+    file = os.path.abspath(system if isinstance(system, (str, os.PathLike)) else system.name)
+    if not os.path.isfile(file):
+        raise Failed(f"{file} is no file that the workers could read: write the source of the system into one, and read that")
+    command = ["rank", file, "--samples", str(int(samples)), "--seed", str(seed)]
+    command += [f"--at={pair}" for pair in _pairs(at)] + [f"--where={condition}" for condition in _several(where)]
+    command += [] if order is None else ["--order", str(order)]
+    folder = os.path.abspath(folder or f"{file}.parts")
+    shards = shards or max(8 * sum(client.nthreads().values()), 8)
+    program = path()
+    found = sweep_command(command, shards, folder, client, program, threads=threads, progress=progress)
+    text, _ = run(program, [*command, "--merge", folder])
+    return Rank(_Merged(found, text.rstrip("\n")))

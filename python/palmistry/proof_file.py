@@ -242,7 +242,7 @@ class System:
             parser.whole()
             found |= {node for value in parser.met for x in entries(value) for node in x.below(found) if node.lacks()}
             for name in {*re.findall(NAME, text)}:
-                owner, *rest = system, *name.split(".")
+                owner, rest = system, name.split(".")
                 while len(rest) > 1:
                     owner = owner.known[rest.pop(0)]
                 if (owner, rest[0]) not in seen:

@@ -430,10 +430,10 @@ def main(arguments):
         print(f"{plain(path)} is no verdict file: {plain(repr(why))}\n{__doc__}", file=sys.stderr)
         return 2
     for seed, (name, record) in enumerate(records):
-        word, why = check(record, folder, systems, seed)
+        word, reason = check(record, folder, systems, seed)
         counts[word] += 1
         if not is_quiet or word == "not confirmed":
-            print(f"{word:15}{plain(name)}: {plain(why)}", flush=True)
+            print(f"{word:15}{plain(name)}: {plain(reason)}", flush=True)
     print(f"{len(records)} verdicts: " + ", ".join(f"{counts[word]} {word}" for word in WORDS_OF_FINDINGS if counts[word]))
     return 1 if counts["not confirmed"] else 0
 

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Union
 
-from .answers import Certificate, Claims, Observation, Page, Rank, Value, Verdicts
+from .answers import Accessibility, Certificate, Claims, Map, Page, Rank, Recheck, SingularSet, Solutions, Value, Verdicts
 from .errors import Error
 from .tables import Table
 
@@ -102,6 +102,34 @@ class System:
         """Reads a system from a text; what it imports is looked for in `folder`. Raises ReadError, with the place."""
         return System(_native.System.parse(text, name, os.fspath(folder)))
 
+    @staticmethod
+    def from_sympy(states: Iterable[Any], fields: Any, outputs: Any, **options: Any) -> System:
+        """The system of SymPy's expressions; the arguments are those of `palmistry.from_sympy`, which returns the text of the proof file."""
+        from .translation import from_sympy
+
+        return System.parse(from_sympy(states, fields, outputs, **options), "SymPy's system")
+
+    @staticmethod
+    def from_casadi(states: Any, fields: Any, outputs: Any, **options: Any) -> System:
+        """The system of CasADi's expressions; the arguments are those of `palmistry.from_casadi`, which returns the text of the proof file."""
+        from .translation import from_casadi
+
+        return System.parse(from_casadi(states, fields, outputs, **options), "CasADi's system")
+
+    @staticmethod
+    def from_function(rates: Callable[..., Any], outputs: Callable[..., Any], **options: Any) -> System:
+        """The system of two Python functions, `f(x, p, u)` and `h(x, p, u)`; the arguments are those of `palmistry.from_function`.
+
+        >>> import numpy, palmistry
+        >>> def f(x, p):
+        ...     return [x.omega, -p.k * numpy.sin(x.phi)]
+        >>> palmistry.System.from_function(f, lambda x: x.phi, states="phi, omega", parameters="k", unknown="k").unknowns
+        ['phi', 'omega', 'k']
+        """
+        from .traced import from_function
+
+        return System.parse(from_function(rates, outputs, **options), "the functions' system")
+
     @property
     def title(self) -> str:
         return self._native.title
@@ -127,6 +155,11 @@ class System:
         return self._native.parameters
 
     @property
+    def unknowns(self) -> list[str]:
+        """What observability and identifiability are asked of: states, and parameters that are to be identified."""
+        return self._native.unknowns
+
+    @property
     def fields(self) -> dict[str, str]:
         """The vector fields with their roles: 'drift', 'input', or 'field' for one that moves nothing."""
         return dict(self._native.fields)
@@ -145,12 +178,12 @@ class System:
         """The unit of a symbol; None where the file says nothing of it."""
         return self._native.unit(name)
 
-    def prove(self, only: str | Iterable[str] = (), seed: int = 1) -> Claims:
+    def prove(self, only: str | Iterable[str] = (), seed: int = 1, *, evidence: bool = False) -> Claims:
         """Decides the claims: each is proved, refuted with a witness, or undecided.
 
-        only: ids, parts of ids before a dot, or patterns with '*'. seed: of the random points.
+        only: ids, parts of ids before a dot, or patterns with '*'. seed: of the random points. evidence: keep what the verdicts rest on, for `Claims.evidence` and `Claims.recheck`.
         """
-        return _asked(Claims, lambda: self._native.prove(_several(only), seed))
+        return _asked(Claims, lambda: self._native.prove(_several(only), seed, evidence))
 
     def rank(
         self,
@@ -175,6 +208,92 @@ class System:
         """
         asked = (samples, seed, _pairs(at), _several(where), order, _wanted(verdict), digits, times, table or coordinates, coordinates)
         return _asked(Rank, lambda: self._native.rank(*asked))
+
+    def observability(self, *, globally: bool = False) -> Table:
+        """Which states are observable: a row a state, name and verdict, generically; with `globally` also how many values give the same
+        outputs (infinite: infinitely many, 0: undecided), and whether that is 'proved' or 'computed'.
+
+        >>> import palmistry
+        >>> tanks = palmistry.System.parse('''
+        ...     system "Two tanks"
+        ...     state a, b
+        ...     param k unknown
+        ...     drift f  a' = -k*a  b' = k*a
+        ...     output a
+        ... ''')
+        >>> dict(zip(tanks.observability()["name"].tolist(), tanks.observability()["verdict"].tolist()))
+        {'a': 'locally observable', 'b': 'unobservable'}
+        """
+        return self._of_kind("state", globally)
+
+    def identifiability(self, *, globally: bool = False) -> Table:
+        """Which unknown parameters are identifiable: a row a parameter, as `observability` of states.
+
+        >>> import palmistry
+        >>> system = palmistry.System.parse('system "s" state x param k unknown drift f x\\' = -k^2*x output x')
+        >>> print(system.identifiability(globally=True))
+        name  verdict               values  values_are
+        k     locally identifiable  2       proved
+        """
+        return self._of_kind("parameter", globally)
+
+    def _of_kind(self, kind: str, globally: bool) -> Table:
+        import numpy
+
+        found = self.rank(samples=0).unknowns
+        chosen = found["kind"] == kind
+        columns = {name: found[name][chosen] for name in ("name", "verdict")}
+        if globally:
+            solutions = self.global_().unknowns
+            places = [list(solutions["name"]).index(name) for name in columns["name"]]
+            values = solutions["values"][places]
+            unique = [verdict.replace("locally", "globally") if value == 1 else verdict for verdict, value in zip(columns["verdict"].tolist(), values)]
+            columns |= {"verdict": numpy.array(unique), "values": values, "values_are": solutions["verdict"][places]}
+        return Table(columns)
+
+    def identifiable_functions(self) -> list[str] | None:
+        """Functions of the unobservable unknowns that are locally identifiable, in the language; None where not all were found.
+
+        >>> import palmistry
+        >>> system = palmistry.System.parse('system "s" state x param a unknown, b unknown drift f x\\' = -a*b*x output x')
+        >>> system.identifiable_functions(), system.unobservable_directions()
+        (['a*b'], [{'a': 'a', 'b': '-b'}])
+        """
+        return self.rank(samples=0).identifiable_functions
+
+    def unobservable_directions(self) -> list[dict[str, str]] | None:
+        """Vector fields along which no output changes: of each its components by unknown, in the language; None where not all were found."""
+        return self.rank(samples=0).unobservable_directions
+
+    def singular_set(self, seed: int = 1) -> SingularSet:
+        """The sets on which the rank drops, each by its equations, with a proof that off them it does not: `palmistry rank --where-it-drops`."""
+        return _asked(SingularSet, lambda: _native.drops(self._native, seed))
+
+    def global_(self, work: int | None = None) -> Solutions:
+        """How many values of each unknown give the same outputs: one, finitely many over the complex numbers, or infinitely many. For rational systems, generically.
+
+        work: how much may be done, in products of residues; what takes more is undecided.
+        """
+        return _asked(Solutions, lambda: _native.solutions(self._native, work))
+
+    def accessible(self, samples: int | None = None, *, seed: int = 1, at: At = None, where: str | Iterable[str] = (), order: int | None = None) -> Accessibility:
+        """Whether the drift and the inputs can move the state in every direction, by brackets. The arguments are those of `rank`."""
+        return _asked(Accessibility, lambda: _native.accessible(self._native, samples, seed, _pairs(at), _several(where), order))
+
+    def reparametrise(self, path: str | os.PathLike[str] | None = None) -> System:
+        """The observable part of the system, as a system whose states are observable functions. Its claims, that it moves so and that the outputs are the same, are for `prove`.
+
+        path: the proof file is written there too. This system has to come from a file, which the new one imports. Raises Error where all is observable already.
+        """
+        if not os.path.isfile(self.name):
+            raise Error(f"'{self.name}' is no file, which the new system would import", "write the source into a file, and read that")
+        text = _native.reparametrised(self._native)
+        found = System.parse(text, "the observable part")
+        if path is not None:
+            here = os.path.relpath(self.name, os.path.dirname(os.path.abspath(path)))
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text.replace(f'"{self.name}"', f'"{here}"', 1))
+        return found
 
     def eval(self, expression: str, at: At = None, digits: int = 20, verdict: str = "certified") -> Value:
         """The value of an expression of the language at a point, to `digits` significant decimal digits, all of them certain.
@@ -230,6 +349,32 @@ class System:
         """
         names = self.coordinates(at, order)
         return Table(self._native.standard_deviations(_pairs(at), order, names, _arrays(states, names)))
+
+    def map(self, x: str, y: str, *, ranges: Mapping[str, Any] | None = None, at: At = None, size: int | tuple[int, int] = 60, order: int | None = None) -> Map:
+        """How well each unknown is observable over two coordinates, as `standard_deviations` has it.
+
+        x, y: names of coordinates. ranges: of these, as (low, high); -1 to 1 unless given here or by the file's sample box. at: values of all others, which have to have one here or in the
+        file. size: of the grid, columns and rows.
+        """
+        import numpy
+
+        columns, rows = (size, size) if isinstance(size, int) else size
+        given = dict(ranges or {})
+        box = self._native.sample_box()
+        grids = []
+        for name, count in ((x, columns), (y, rows)):
+            low, high = given.get(name, box.get(name, (-1.0, 1.0)))
+            grids.append(numpy.linspace(float(low), float(high), count))
+        needed = self.coordinates(at, order)
+        for name in (x, y):
+            if name not in needed:
+                raise Error(f"'{name}' is no coordinate", f"these are {', '.join(needed)}")
+        others = [name for name in needed if name not in (x, y)]
+        middle = {name: sum(box.get(name, (-1.0, 1.0))) / 2 for name in others}
+        xs, ys = (grid.ravel() for grid in numpy.meshgrid(*grids))
+        states = {x: xs, y: ys, **{name: numpy.full(xs.shape, middle[name]) for name in others}}
+        found = self.standard_deviations({name: states[name] for name in needed}, at=at, order=order)
+        return Map(x, y, (grids[0], grids[1]), {name: found[name].reshape(rows, columns) for name in found})
 
     def certify(
         self,
@@ -301,20 +446,49 @@ def _columns(states: Any, names: list[str]) -> list[Any]:
     return [array[:, place] for place in range(len(names))]
 
 
-def observe(
-    scene: str | os.PathLike[str],
-    data: str | os.PathLike[str] | None = None,
-    *,
-    seed: int | None = None,
-    studies: bool = False,
-    times: bool = True,
-) -> Observation:
-    """Runs the observers of a scene, on simulated or recorded measurements.
+def recheck_file(path: str | os.PathLike[str], *, proofs: str | os.PathLike[str] = ".", seed: int = 1) -> Recheck:
+    """The verdicts of a file, evaluated again by the small checker that shares nothing with the engines: `palmistry recheck`. Another one, which shares nothing with the program, is
+    `python -m palmistry.recheck`.
 
-    scene: a TOML file. data: measurements as CSV or Parquet. seed: another one than the scene's. studies: run these too. times: whether `seconds` are told.
+    proofs: the folder from which the names of proof files are read. seed: of the states at which proofs are tried. `Claims.recheck` does the same of what `prove` has found.
     """
-    data = None if data is None else os.fspath(data)
-    return _asked(Observation, lambda: _native.observe(os.fspath(scene), data, seed, studies, times))
+    with open(path, encoding="utf-8") as file:
+        return rechecked(file.read(), proofs, seed)
+
+
+def rechecked(text: str, proofs: str | os.PathLike[str], seed: int) -> Recheck:
+    return _asked(Recheck, lambda: _native.recheck(text, os.fspath(proofs), seed))
+
+
+def threads(count: int | None) -> None:
+    """From now on so many threads share the work of each question; None leaves it to RAYON_NUM_THREADS and the machine. No answer depends on it."""
+    if count is not None and count < 1:
+        raise Error(f"{count} threads cannot work", "one or more can; None takes all processors")
+    _native.set_threads(count or 0)
+
+
+def import_model(
+    path: str | os.PathLike[str],
+    *,
+    format: str | None = None,
+    model: str | int | None = None,
+    outputs: str | Iterable[str] = (),
+    unknown: str | Iterable[str] | None = None,
+    inputs: str | Iterable[str] = (),
+    unknown_inputs: str | Iterable[str] = (),
+    states: str | Iterable[str] = (),
+) -> System:
+    """The system of a model file of another program: Julia (StructuralIdentifiability.jl, ModelingToolkit.jl), SBML, StrikePy, STRIKE-GOLDD, or formulas that SymPy or CasADi printed.
+
+    Nothing of the file is executed. format: 'julia', 'sbml', 'strikepy', 'strike-goldd' or 'formulas', found out unless given. model: which of several, by name or number. outputs: in place of
+    those of the file. unknown: parameters that are to be identified, 'all', or [] for none; what the file says unless given. inputs, unknown_inputs: parameters that are signals which
+    somebody, or nobody, knows. states: in the order of a vector of rates. What was renamed and what else is worth knowing stands in comments of `source`.
+    """
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    asked = (format, None if model is None else str(model), _several(outputs), None if unknown is None else _several(unknown), _several(inputs), _several(unknown_inputs), _several(states))
+    proof, _, _, _ = _native.imported(os.fspath(path), text, *asked)
+    return System.parse(proof, os.fspath(path))
 
 
 def verify(folder: str | os.PathLike[str], *, seed: int = 1, times: bool = True) -> Page:

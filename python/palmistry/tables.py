@@ -42,6 +42,14 @@ class Table(Mapping[str, "numpy.ndarray"]):
 
         return pyarrow.table(self._columns)
 
+    def __str__(self) -> str:
+        """The first rows, a line each, columns aligned."""
+        most = 40
+        cells = [[name, *(_told(value) for value in column[:most])] for name, column in self._columns.items()]
+        widths = [max(map(len, column)) for column in cells]
+        lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in zip(*cells)]
+        return "\n".join(lines + ([f"... {self.rows} rows"] if self.rows > most else []))
+
     def __repr__(self) -> str:
         return f"<table of {self.rows} rows: {', '.join(self._columns)}>"
 
@@ -53,3 +61,8 @@ class Table(Mapping[str, "numpy.ndarray"]):
         body = "".join("<tr>" + "".join(f"<td>{escape(str(column[i]))}</td>" for column in self._columns.values()) + "</tr>" for i in first)
         more = f"<p>{self.rows} rows</p>" if self.rows > len(first) else ""
         return f"<table><thead><tr>{heads}</tr></thead><tbody>{body}</tbody></table>{more}"
+
+
+def _told(value: Any) -> str:
+    """A cell as text: a float to six digits."""
+    return f"{value:.6g}" if isinstance(value, float) or getattr(getattr(value, "dtype", None), "kind", "") == "f" else str(value)

@@ -2,12 +2,11 @@
 
 use numpy::PyArray1;
 use palmistry::certificate::RegionAnswer;
-use palmistry::experiment::{Answer, Experiment, Studied, shown};
+use palmistry::checker::{VerdictFile, VerdictRecord};
 use palmistry::observer::Record;
 use palmistry::report::{
-    ClaimsForm, ClaimsSummary, Layout, Observed, Shown, claim_json, claims_html, claims_json, claims_text,
-    forget_seconds, observe_json, observe_page, observe_text, rank_html, rank_json, rank_text, region_curve,
-    region_json, region_map, region_text, versioned,
+    ClaimsForm, ClaimsSummary, Layout, Shown, claim_json, claims_html, claims_json, claims_text, rank_html,
+    rank_json, rank_text, region_curve, region_json, region_map, region_text, versioned,
 };
 use palmistry::sweep::StateRow;
 use palmistry::{Outcome, RankAnswer};
@@ -18,6 +17,12 @@ use serde_json::{Value, json};
 /// An object as the program prints it.
 pub fn printed(object: Value) -> String {
     serde_json::to_string_pretty(&versioned(object)).unwrap_or_default()
+}
+
+/// Records as a verdict file.
+fn verdict_file(py: Python<'_>, seed: u64, records: Vec<VerdictRecord>) -> PyResult<String> {
+    let text = VerdictFile::new(seed, records).text();
+    text.map_err(|why| crate::errors::unusable(py, &why.to_string(), None))
 }
 
 /// The claims of a system, decided.
@@ -50,6 +55,12 @@ impl ClaimsFound {
 
     fn html(&self) -> String {
         claims_html(&self.outcomes)
+    }
+
+    /// What the verdicts rest on, as a verdict file.
+    fn verdicts(&self, py: Python<'_>) -> PyResult<String> {
+        let records = self.outcomes.iter().flat_map(|outcome| outcome.evidence.iter().cloned());
+        verdict_file(py, self.seed, records.collect())
     }
 }
 
@@ -132,67 +143,8 @@ impl CertificateFound {
     }
 }
 
-/// An experiment, and what its observers made of it.
-#[pyclass(frozen, module = "palmistry._native")]
-pub struct ObservationFound {
-    pub experiment: Experiment,
-    pub answers: Vec<Answer>,
-    pub studied: Studied,
-    pub times: bool,
-    pub interrupted: bool,
-}
-
-impl ObservationFound {
-    fn observed(&self) -> Observed<'_> {
-        Observed {
-            experiment: &self.experiment,
-            answers: &self.answers,
-            studied: &self.studied,
-            interrupted: self.interrupted,
-        }
-    }
-}
-
-#[pymethods]
-impl ObservationFound {
-    fn json(&self) -> String {
-        let mut object = observe_json(&self.observed());
-        if !self.times {
-            forget_seconds(&mut object);
-        }
-        printed(object)
-    }
-
-    fn text(&self) -> String {
-        observe_text(&self.observed())
-    }
-
-    /// The whole page.
-    fn page(&self) -> String {
-        observe_page(&self.observed())
-    }
-
-    /// A table by its name: `readings`, `motion`, `track` or `outline`; none where there is no such thing.
-    fn table<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let answer = shown(&self.answers);
-        let reconstruction = answer.and_then(|answer| answer.reconstruction.as_deref());
-        let found = match name {
-            "readings" => Some(Ok(self.experiment.record.clone())),
-            "motion" => match (&self.experiment.simulation, &self.experiment.motion) {
-                (Some(simulation), _) => Some(simulation.table()),
-                (None, motion) => motion.as_ref().map(|motion| motion.table()),
-            },
-            "track" => answer.map(|answer| self.experiment.track_table(answer, reconstruction)),
-            _ => reconstruction.and_then(|found| found.outline_table()),
-        };
-        let Some(found) = found else { return Ok(None) };
-        let record = found.map_err(|why| crate::errors::unusable(py, &why.to_string(), None))?;
-        columns(py, &record).map(Some)
-    }
-}
-
 /// A record as columns.
-fn columns<'py>(py: Python<'py>, record: &Record) -> PyResult<Bound<'py, PyDict>> {
+pub fn columns<'py>(py: Python<'py>, record: &Record) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
     columns.set_item(record.first_name(), PyArray1::from_slice(py, record.times()))?;
     for name in record.names() {

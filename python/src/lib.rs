@@ -3,9 +3,13 @@
 
 mod answers;
 mod errors;
+mod observed;
+mod questions;
 mod scenes;
 mod states;
+mod stream;
 mod system;
+mod told;
 mod work;
 
 use pyo3::prelude::*;
@@ -13,13 +17,23 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::answers::{CertificateFound, ClaimsFound, ObservationFound, RankFound};
+    use super::answers::{CertificateFound, ClaimsFound, RankFound};
     #[pymodule_export]
-    use super::scenes::{latex, observe, our_names, verify};
+    use super::observed::ObservationFound;
+    #[pymodule_export]
+    use super::questions::{accessible, drops, imported, recheck, reparametrised, solutions};
+    #[pymodule_export]
+    use super::scenes::{latex, observe, observe_measured, our_names, verify};
     #[pymodule_export]
     use super::states::StatesDecider;
     #[pymodule_export]
+    use super::stream::Stream;
+    #[pymodule_export]
     use super::system::System;
+    #[pymodule_export]
+    use super::told::Told;
+    #[pymodule_export]
+    use super::work::set_threads;
     use pyo3::prelude::*;
 
     #[pymodule_init]

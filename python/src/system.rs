@@ -6,7 +6,7 @@ use crate::states::StatesDecider;
 use crate::work::{Cut, interruptible, interruptible_here, keeping};
 use numpy::{PyArray1, PyReadonlyArray1};
 use palmistry::certificate::{Limits, Region, RegionRows};
-use palmistry::claim::{Selection, decide_all, evaluate};
+use palmistry::claim::{Kept, Selection, decide_all_keeping, evaluate};
 use palmistry::report::{ValueAsked, unit_of, value_json};
 use palmistry::sweep::{Certainty, RankError, RankPreparation, StateRow, StateTable};
 use palmistry::system::Role;
@@ -90,6 +90,22 @@ impl System {
         self.system.outputs.iter().map(|(text, _)| text.clone()).collect()
     }
 
+    /// The names of the unknowns: states and unknown parameters.
+    #[getter]
+    fn unknowns(&self) -> Vec<String> {
+        self.system.unknowns().into_iter().map(|symbol| self.system.symbol_name(symbol).to_owned()).collect()
+    }
+
+    /// The ends of the ranges from which symbols are drawn, by name: of the file's sample box, or the default of what has none.
+    fn sample_box(&self) -> BTreeMap<String, (f64, f64)> {
+        let range = |(symbol, info): (_, &palmistry::system::SymbolInfo)| {
+            let range = info.range.clone().or_else(|| self.system.default_range(symbol))?;
+            let [low, high] = [&range.low, &range.high].map(palmistry::number::rational_to_f64);
+            Some((self.system.symbol_name(symbol).to_owned(), (low, high)))
+        };
+        self.system.symbols().filter_map(range).collect()
+    }
+
     /// The names of the claims.
     #[getter]
     fn claims(&self) -> Vec<String> {
@@ -101,8 +117,8 @@ impl System {
         unit_of(&self.system, name)
     }
 
-    /// Decides the claims that meet any of the patterns; all where there are none.
-    fn prove(&self, py: Python<'_>, only: Vec<String>, seed: u64) -> PyResult<ClaimsFound> {
+    /// Decides the claims that meet any of the patterns; all where there are none. What the verdicts rest on is kept if it is to be.
+    fn prove(&self, py: Python<'_>, only: Vec<String>, seed: u64, evidence: bool) -> PyResult<ClaimsFound> {
         let mut system = Read::clone(&self.system);
         let selection = Selection::new(&only);
         if let Some(unmet) = selection.unmet(system.claims.iter().map(|claim| claim.id.as_str())) {
@@ -118,7 +134,8 @@ impl System {
         let found = keeping(py, move |interrupt| {
             let done =
                 |outcome: &Outcome| keep.lock().unwrap_or_else(PoisonError::into_inner).push(outcome.clone());
-            decide_all(&system, seed, interrupt, &done)
+            let kept = if evidence { Kept::Evidence } else { Kept::Verdicts };
+            decide_all_keeping(kept, &system, seed, interrupt, &done)
         });
         let made = |outcomes| ClaimsFound { outcomes, asked, seed, seconds: begin.elapsed().as_secs_f64() };
         found.map(made).map_err(|cut| {
@@ -316,6 +333,11 @@ fn wanted(certified: bool) -> Certainty {
 }
 
 impl System {
+    /// What was read.
+    pub fn read_system(&self) -> &Read {
+        &self.system
+    }
+
     fn of(py: Python<'_>, found: Result<Read, palmistry::ReadError>) -> PyResult<System> {
         match found {
             Ok(system) => Ok(System { system: Arc::new(system) }),

@@ -4,7 +4,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::{PyClass, PyClassInitializer};
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -21,7 +21,8 @@ const MOST_THREADS: usize = 1024;
 /// The threads that share the work, and the process that made them: a process that was forked has none of its parent's.
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-fn pool() -> PyResult<Arc<ThreadPool>> {
+/// These threads.
+pub fn pool() -> PyResult<Arc<ThreadPool>> {
     let mut held = POOL.lock().unwrap_or_else(PoisonError::into_inner);
     let here = std::process::id();
     if let Some((process, pool)) = held.as_ref().filter(|(process, _)| *process == here) {
@@ -32,7 +33,11 @@ fn pool() -> PyResult<Arc<ThreadPool>> {
         // its threads are not here, and to wait for them would last for ever
         std::mem::forget(of_the_parent);
     }
-    let asked = std::env::var("RAYON_NUM_THREADS").ok().and_then(|text| text.trim().parse::<u128>().ok());
+    let said = std::env::var("RAYON_NUM_THREADS").ok().and_then(|text| text.trim().parse::<u128>().ok());
+    let asked = match THREADS.load(Ordering::Relaxed) {
+        0 => said,
+        threads => Some(threads as u128),
+    };
     let mut builder = ThreadPoolBuilder::new().stack_size(STACK);
     if let Some(asked) = asked {
         builder = builder.num_threads(usize::try_from(asked).unwrap_or(MOST_THREADS).min(MOST_THREADS));
@@ -43,6 +48,20 @@ fn pool() -> PyResult<Arc<ThreadPool>> {
     let built = Arc::new(built);
     *held = Some((here, built.clone()));
     Ok(built)
+}
+
+/// How many threads are asked for; 0 where nobody did.
+static THREADS: AtomicUsize = AtomicUsize::new(0);
+
+/// From now on so many threads share the work; 0 leaves it to the environment and the machine.
+#[pyfunction]
+pub fn set_threads(threads: usize) {
+    THREADS.store(threads.min(MOST_THREADS), Ordering::Relaxed);
+    let mut held = POOL.lock().unwrap_or_else(PoisonError::into_inner);
+    match held.take() {
+        Some((process, pool)) if process != std::process::id() => std::mem::forget(pool),
+        _ => {}
+    }
 }
 
 /// New threads for what comes next: some of these are still busy with work that was left.

@@ -11,7 +11,7 @@ import unittest
 
 from common import PROGRAM, ROOT, built
 
-from palmistry.cluster import Failed, missing, sweep
+from palmistry.cluster import Failed, missing, sweep_command
 
 try:
     from dask.distributed import Client, LocalCluster
@@ -89,7 +89,7 @@ class Cluster(unittest.TestCase):
         command = ["rank", FILE, "--samples", str(SAMPLES), "--seed", "5"]
         with tempfile.TemporaryDirectory() as folder:
             found = []
-            work = threading.Thread(target=lambda: found.append(sweep(command, SHARDS, folder, self.client, PROGRAM)))
+            work = threading.Thread(target=lambda: found.append(sweep_command(command, SHARDS, folder, self.client, PROGRAM)))
             work.start()
             while parts(folder) < 3:
                 self.assertTrue(work.is_alive(), "it is over before anything was killed")
@@ -115,7 +115,7 @@ class Cluster(unittest.TestCase):
             with open(scene, "w", encoding="utf-8") as file:
                 file.write(STUDIES)
             command, parts = ["observe", scene], os.path.join(folder, "parts")
-            found = sweep(command, 3, parts, self.client, PROGRAM)
+            found = sweep_command(command, 3, parts, self.client, PROGRAM)
             self.assertEqual(found, json.loads(output(*command, "--studies", "--no-times", "--json")))
             self.assertEqual([level["seeds"] for level in found["noise"]], [4, 4])
             self.assertEqual([len(basin["arrives"]) for basin in found["basins"]], [4])
@@ -124,18 +124,18 @@ class Cluster(unittest.TestCase):
     def test_a_damaged_part_is_done_again_and_a_whole_one_is_not(self):
         command = ["rank", FILE, "--samples", "300"]
         with tempfile.TemporaryDirectory() as folder:
-            first = sweep(command, 4, folder, self.client, PROGRAM)
+            first = sweep_command(command, 4, folder, self.client, PROGRAM)
             times = {name: os.stat(os.path.join(folder, name)).st_mtime_ns for name in os.listdir(folder)}
             path = os.path.join(folder, "rank-3-of-4.json")
             with open(path, "r+", encoding="utf-8") as part:
                 part.truncate(200)
-            self.assertEqual(sweep(command, 4, folder, self.client, PROGRAM), first)
+            self.assertEqual(sweep_command(command, 4, folder, self.client, PROGRAM), first)
             changed = {name for name, before in times.items() if os.stat(os.path.join(folder, name)).st_mtime_ns != before}
             self.assertEqual(changed, {"rank-3-of-4.json"})
 
     def test_what_cannot_be_swept_is_said(self):
         with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(Failed, "no state was found"):
-            sweep(["rank", FILE, "--samples", "300", "--where", "r1 > 1000000"], 2, folder, self.client, PROGRAM, retries=0)
+            sweep_command(["rank", FILE, "--samples", "300", "--where", "r1 > 1000000"], 2, folder, self.client, PROGRAM, retries=0)
 
 
 if __name__ == "__main__":

@@ -22,10 +22,7 @@ impl SlowTold {
     pub fn tell(mut self, mut files: Files) -> miette::Result<Status> {
         if self.no_times {
             self.answers.seconds = [f64::NAN; 3];
-            for row in &mut self.study {
-                let ways = row.thesis.iter_mut().chain([&mut row.quadrature, &mut row.together]);
-                ways.for_each(|way| way.seconds = f64::NAN);
-            }
+            self.study.iter_mut().for_each(StudyRow::forget_times);
         }
         let observed = SlowObserved {
             experiment: &self.experiment,

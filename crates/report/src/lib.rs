@@ -23,6 +23,7 @@ mod page;
 mod plot;
 mod poses;
 mod ranks;
+mod recheck;
 mod slow;
 mod slow_observed;
 mod slow_plot;
@@ -69,6 +70,7 @@ pub use ranks::{
     StateTableWriter, TableForm, accessibility_json, accessibility_text, drops_json, drops_text, global_json,
     global_text, rank_json, rank_so_far_json, rank_so_far_text, rank_text, unseen_field_text,
 };
+pub use recheck::{has_failed, recheck_json, recheck_text};
 #[doc(hidden)]
 pub use slow::{slow_json, slow_page, slow_text};
 #[doc(hidden)]

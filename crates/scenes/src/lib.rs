@@ -54,7 +54,7 @@ pub use recovered::{
 };
 #[doc(hidden)]
 pub use run::error;
-pub use run::{Answer, Experiment};
+pub use run::{Answer, Experiment, Measurements};
 #[doc(hidden)]
 pub use scene::{BasinStudy, CurvatureStudy, NoiseStudy, SceneOutline};
 pub use scene::{

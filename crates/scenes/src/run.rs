@@ -16,7 +16,7 @@ use palmistry_io::UNINTERRUPTED;
 use palmistry_lang::System;
 use palmistry_observe::{
     EstimateQuestion, Fault, ModelError, MovingWindow, Noise, Observer, Record, RecordError, RecordReading,
-    Signals, Task, Track, WindowSearch,
+    RecordRows, Signals, Task, Track, WindowSearch,
 };
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -51,6 +51,15 @@ pub struct Experiment {
     pub question: EstimateQuestion,
 }
 
+/// Measurements from elsewhere.
+#[derive(Clone, Debug)]
+pub enum Measurements<'a> {
+    /// A file, CSV or Parquet.
+    File(&'a Path),
+    /// Columns under their names, all of one length: the time, in s, and what is measured.
+    Columns(Vec<(String, Vec<f64>)>),
+}
+
 /// What one observer made of it.
 #[derive(Clone, Debug)]
 pub struct Answer {
@@ -82,8 +91,31 @@ impl Experiment {
     pub fn new(scene: Scene, data: Option<&Path>) -> Result<Experiment, SceneError> {
         let file = data.map(Path::to_owned).or_else(|| scene.data.record.clone());
         let ground = Groundwork::of(scene, file.is_none())?;
+        Experiment::on(ground, file.as_deref())
+    }
+
+    /// The experiment with measurements of a system that need not be a file's: where the scene names its model, that is not looked for.
+    ///
+    /// # Errors
+    /// As for [`Experiment::new`].
+    pub fn measured(scene: Scene, system: System, measured: Measurements<'_>) -> Result<Experiment, SceneError> {
+        let ground = Groundwork::with_system(scene, system, false)?;
+        match measured {
+            Measurements::File(file) => Experiment::on(ground, Some(file)),
+            Measurements::Columns(columns) => {
+                let needed = ground.needed();
+                let needed: Vec<&str> = needed.iter().map(String::as_str).collect();
+                let rows = RecordRows::of_columns("the measurements", columns, &needed, &ground.names);
+                let reading = rows.and_then(|rows| rows.settle(&ground.fault_rules()));
+                let reading = reading.map_err(|error| unusable(&ground.scene, &error))?;
+                Experiment::with_readings(ground, reading, None, Steady::AreConstants)
+            }
+        }
+    }
+
+    fn on(ground: Groundwork, file: Option<&Path>) -> Result<Experiment, SceneError> {
         let Groundwork { scene, names, .. } = &ground;
-        let (reading, written) = match (ground.simulated(), &file) {
+        let (reading, written) = match (ground.simulated(), file) {
             (Some(simulated), _) => {
                 let place = |error: RecordError| {
                     scene.error_at("sensor", error.to_string(), "these measurements", "")

@@ -57,6 +57,41 @@ impl RecordRows {
             Some("parquet") => return Err(RecordError::NoParquet { path: path.to_owned() }),
             _ => return Err(RecordError::Extension { path: path.to_owned() }),
         };
+        RecordRows::of_table(path, table, needed, columns)
+    }
+
+    /// Columns that no file holds, as one that does: each of the same length, the time among them as any other. `name` is what stands in messages where else
+    /// the file's would.
+    ///
+    /// # Errors
+    /// As [`RecordRows::read_named`], and where a column is longer than another.
+    pub fn of_columns(
+        name: &str,
+        held: Vec<(String, Vec<f64>)>,
+        needed: &[&str],
+        columns: &ColumnNames,
+    ) -> Result<RecordRows, RecordError> {
+        let length = held.first().map_or(0, |(_, values)| values.len());
+        if let Some((column, values)) = held.iter().find(|(_, values)| values.len() != length) {
+            let (column, found) = (column.clone(), values.len());
+            return Err(RecordError::Length { column, found, expected: length });
+        }
+        let row = |place: usize| Row {
+            line: None,
+            cells: held.iter().map(|(_, values)| Cell::Number(values[place])).collect(),
+            surplus: 0,
+        };
+        let rows = (0..length).map(row).collect();
+        let names = held.into_iter().map(|(name, _)| name).collect();
+        RecordRows::of_table(Path::new(name), Table { names, rows, foreign: BTreeMap::new() }, needed, columns)
+    }
+
+    fn of_table(
+        path: &Path,
+        table: Table,
+        needed: &[&str],
+        columns: &ColumnNames,
+    ) -> Result<RecordRows, RecordError> {
         twice(path, &table.names)?;
         let plan = columns.plan(path, &table.names)?;
         let judged = judged(path, &plan, needed)?;

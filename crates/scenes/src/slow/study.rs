@@ -109,6 +109,14 @@ pub struct StudyRow {
     pub silent: usize,
 }
 
+impl StudyRow {
+    /// Replaces each time on the wall by NaN.
+    pub fn forget_times(&mut self) {
+        let ways = self.thesis.iter_mut().chain([&mut self.quadrature, &mut self.together]);
+        ways.for_each(|way| way.seconds = f64::NAN);
+    }
+}
+
 /// The greatest difference of two outlines about their centres of mass over all directions, in m, one of them turned so that it is least.
 fn outline_error(shape: &Shape, found: &SupportFunction) -> f64 {
     const DIRECTIONS: usize = 720;

@@ -1,0 +1,192 @@
+"""Observers: on scenes of every kind, and on measurements of a system at hand."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from .answers import Observation
+from .errors import Error
+from .system import System, _asked, _native, _several
+
+
+def observe(
+    scene: System | str | os.PathLike[str],
+    data: Any = None,
+    *,
+    seed: int | None = None,
+    studies: bool = False,
+    times: bool = True,
+    time: str = "time",
+    columns: Mapping[str, str] | None = None,
+    inputs: Mapping[str, str] | None = None,
+    noise: float | Mapping[str, float] | None = None,
+    unknowns: Iterable[str] | str | None = None,
+    known: Mapping[str, float] | None = None,
+    guess: Mapping[str, float] | None = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    method: str | Iterable[str] | None = None,
+    window: int | None = None,
+    steps: int = 50,
+    loss: str | None = None,
+    on_fault: str = "stop",
+) -> Observation:
+    """Runs observers: of a scene, a TOML file of any kind, or of a system on measurements.
+
+    Of a scene: data: measurements as CSV or Parquet in place of the scene's. seed: another one than the scene's. studies: run these too. times: whether `seconds` are told.
+
+    Of a system: data: a pandas.DataFrame, a dict of columns, or the path of a CSV or Parquet file, with the time in s, what each output measures, and what drives the inputs. Columns have
+    the names of the model's outputs and inputs, or `columns` says what they are called: {"phi": "angle_deg"}. time: the column of times (of a DataFrame without one its index). inputs: by input field the column that drives it.
+    noise: the standard deviation of the outputs' errors, in their units, one for all or by output; estimated from the residuals unless given. unknowns: what is sought, all unknowns of the system
+    unless given. known: values of what is neither sought nor measured. guess: where the search begins; of what is not named in the middle of its range in the sample box. bounds: between what some of it lies.
+    method: 'multiple-shooting' (unless a guess is given), 'trust-region', 'newton', 'kalman', 'unscented', 'high-gain' or 'integration', or several. window: samples of one window, all unless given.
+    steps: of the search in each window. loss: 'huber' or another of the book's; squares unless given. on_fault: 'stop' or 'skip' rows that are faulty.
+
+    >>> import numpy, palmistry
+    >>> decay = palmistry.System.parse('''
+    ...     system "A decay"
+    ...     state x
+    ...     param k unknown
+    ...     drift f  x' = -k*x
+    ...     output x
+    ...     sample x in [0, 2]  k in [0, 2]
+    ... ''')
+    >>> t = numpy.linspace(0, 3, 31)
+    >>> found = palmistry.observe(decay, {"time": t, "x": numpy.exp(-0.7*t)}, noise=1e-3)
+    >>> found.estimates["name"].tolist(), found.estimates["estimate"].round(3).tolist(), found.fits
+    (['x', 'k'], [1.0, 0.7], True)
+    """
+    if not isinstance(scene, System):
+        file = None if data is None else os.fspath(data)
+        return _asked(Observation, lambda: _native.observe(os.fspath(scene), file, seed, studies, times))
+    if data is None:
+        raise Error("there are no measurements", "hand over a DataFrame, a dict of columns, or the path of a file")
+    if studies:
+        raise Error("a study needs the true states, which measurements do not have", "leave out studies")
+    path, held = _measurements(data, time)
+    length = len(held[0][1]) if held else None
+    methods = _several(method) if method is not None else ["trust-region" if guess is not None else "multiple-shooting"]
+    if window is None:
+        window = length - 1 if length is not None else _rows(path) - 1
+    settings: dict[str, Any] = {
+        "methods": methods,
+        "estimate": list(_several(unknowns) if unknowns is not None else scene.unknowns),
+        "window": max(int(window), 1),
+        "steps": int(steps),
+    }
+    if guess is None:
+        settings["guess"] = "sample"
+    else:
+        box = scene._native.sample_box()
+        middle = {name: sum(box.get(name, (0.0, 0.0))) / 2 for name in settings["estimate"]}
+        settings["guess"] = {**middle, **guess}
+    said = {"known": known, "inputs": inputs, "bounds": bounds, "loss": loss}
+    settings |= {key: value for key, value in said.items() if value is not None}
+    lines = [f"title = {_toml(scene.title)}", 'model = "the system"']
+    if seed is not None:
+        lines.append(f"seed = {_toml(seed)}")
+    if isinstance(noise, Mapping):
+        for name, deviation in noise.items():
+            lines += [f"[sensor.{_toml(name)}]", f"noise = {_toml(float(deviation))}"]
+    elif noise is not None:
+        lines += ["[sensor]", f"noise = {_toml(float(noise))}"]
+    # a scene has to say that its measurements come from elsewhere; that file is not looked for
+    lines += ["[data]", 'record = "the measurements.csv"', f"on_fault = {_toml(on_fault)}"]
+    renamed = dict(columns or {})
+    if path is not None and time != "time":
+        renamed["time"] = time
+    if renamed:
+        lines += ["[columns]", *(f"{_toml(name)} = {_toml(other)}" for name, other in renamed.items())]
+    lines += ["[observer]", *(f"{key} = {_toml(value)}" for key, value in settings.items())]
+    text = "\n".join(lines) + "\n"
+    return _asked(Observation, lambda: _native.observe_measured(scene._native, text, path, held, times))
+
+
+def stream(scene: str | os.PathLike[str], pieces: Iterable[Any], *, times: bool = True) -> Iterator[dict[str, Any]]:
+    """Observers on measurements as they arrive: each window's answer as soon as it is there, and at the end an account of all; objects as `palmistry observe SCENE --data - --json` prints.
+
+    pieces: texts or bytes of comma-separated values, the first line with the names of columns; or rows as dicts, of which the first says the names. times: whether `seconds` are told.
+    Memory is bounded by a window. A break ends the work.
+    """
+    native = _native.Stream(os.fspath(scene), times)
+    try:
+        names: list[str] | None = None
+        for piece in pieces:
+            if isinstance(piece, Mapping):
+                head = ""
+                if names is None:
+                    names = [str(name) for name in piece]
+                    head = ",".join('"' + name.replace('"', '""') + '"' for name in names) + "\n"
+                piece = head + ",".join(repr(float(piece[name])) for name in names) + "\n"
+            native.put(list(piece.encode()) if isinstance(piece, str) else list(piece))
+            while (line := native.ready()) is not None:
+                yield json.loads(line)
+        native.close()
+        while (line := native.wait()) is not None:
+            yield json.loads(line)
+    finally:
+        native.stop()
+
+
+def _toml(value: Any) -> str:
+    """A value in TOML."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=True)
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{_toml(str(key))} = {_toml(entry)}" for key, entry in value.items()) + " }"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    item = getattr(value, "item", None)  # numpy's scalars
+    if item is not None:
+        value = item()
+    if isinstance(value, (int, float)):
+        return repr(value)
+    return repr(float(value))
+
+
+def _measurements(data: Any, time: str) -> tuple[str | None, list[tuple[str, Any]]]:
+    """The path of a file, or columns as contiguous doubles with the time among them as 'time'."""
+    import numpy
+
+    if isinstance(data, (str, os.PathLike)):
+        return os.fspath(data), []
+    if hasattr(data, "columns") and hasattr(data, "index"):  # a DataFrame
+        held = {str(name): data[name].to_numpy() for name in data.columns}
+        if time not in held:
+            held[time] = data.index.to_numpy()
+    elif isinstance(data, Mapping):
+        held = {str(name): data[name] for name in data}
+    else:
+        raise Error(f"measurements are no {type(data).__name__}", "hand over a DataFrame, a dict of columns, or the path of a file")
+    if time not in held:
+        raise Error(f"there is no column '{time}'", f"the columns are {', '.join(held)}; say which has the times by time='...'")
+    found = []
+    for name, values in held.items():
+        array = numpy.asarray(values)
+        if array.dtype.kind == "M":  # dates: from the first one, in s
+            array = (array - array[0]) / numpy.timedelta64(1, "s")
+        elif array.dtype.kind == "m":
+            array = array / numpy.timedelta64(1, "s")
+        if array.dtype.kind not in "fiub" or array.ndim != 1:
+            continue  # texts and the like: refused by name where the model needs the column
+        found.append(("time" if name == time else name, numpy.ascontiguousarray(array, dtype=numpy.float64)))
+    if not any(name == "time" for name, _ in found):
+        raise Error(f"the column '{time}' does not hold numbers", "times are seconds, or dates of numpy")
+    return None, found
+
+
+def _rows(path: str | None) -> int:
+    """How many samples a file has, at most."""
+    assert path is not None
+    if path.lower().endswith(".parquet"):
+        try:
+            import pyarrow.parquet as parquet
+        except ImportError as why:
+            raise Error("how many rows a Parquet file has is not known without pyarrow", "say window=..., or pip install 'palmistry[tables]'") from why
+        return parquet.ParquetFile(path).metadata.num_rows
+    with open(path, "rb") as file:
+        return max(sum(1 for line in file if line.strip()) - 1, 2)

@@ -1,0 +1,136 @@
+//! What is asked of a system beside claims, ranks and boxes; and verdict files held to their proof files.
+
+use crate::errors::{given, unreadable, unusable};
+use crate::system::System;
+use crate::told::Told;
+use crate::work::{interruptible, keeping};
+use palmistry::checker::{Checking, Effort, ProofSources, VerdictFile};
+use palmistry::drops::where_it_drops;
+use palmistry::import::{ForeignFormat, ForeignUnknowns, ImportQuestion, import};
+use palmistry::report::{
+    accessibility_json, accessibility_text, drops_json, drops_page, drops_text, global_json, global_text,
+    recheck_json, recheck_text,
+};
+use palmistry::sweep::{RankError, answer_accessibility, answer_solutions};
+use palmistry::{RankQuestion, System as Read};
+use pyo3::prelude::*;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+
+/// How many values of each unknown give the same outputs.
+#[pyfunction]
+pub fn solutions(py: Python<'_>, system: &System, work: Option<u64>) -> PyResult<Told> {
+    let mut system = Read::clone(system.read_system());
+    let work = work.unwrap_or(palmistry::observability::SOLUTIONS_WORK);
+    let found = keeping(py, move |interrupt| answer_solutions(&mut system, work, interrupt));
+    let made = |answer| Told::new(global_json(&answer), global_text(&answer));
+    let found = found.map_err(|cut| cut.map(|found| found.ok().map(made)).with_found(py))?;
+    found.map(made).map_err(|why| unusable(py, &why.to_string(), None))
+}
+
+/// The sets on which the rank drops.
+#[pyfunction]
+pub fn drops(py: Python<'_>, system: &System, seed: u64) -> PyResult<Told> {
+    let mut system = Read::clone(system.read_system());
+    let found = keeping(py, move |interrupt| where_it_drops(&mut system, seed, interrupt));
+    let made = |answer| Told::new(drops_json(&answer), drops_text(&answer)).with_page(drops_page(&answer));
+    let found = found.map_err(|cut| cut.map(|found| found.ok().map(made)).with_found(py))?;
+    found.map(made).map_err(|why| unusable(py, &why, None))
+}
+
+/// What the inputs can move.
+#[pyfunction]
+pub fn accessible(
+    py: Python<'_>,
+    system: &System,
+    samples: Option<u64>,
+    seed: u64,
+    at: Vec<String>,
+    conditions: Vec<String>,
+    order: Option<usize>,
+) -> PyResult<Told> {
+    let fixed = system.read_system().given_values(&at).map_err(|error| given(py, &error))?;
+    let fixed: BTreeMap<_, _> = fixed.into_iter().collect();
+    let mut system = Read::clone(system.read_system());
+    let found = keeping(py, move |interrupt| {
+        let samples = samples.unwrap_or(RankQuestion::default().samples);
+        let question =
+            RankQuestion { samples, seed, order, fixed, conditions, interrupt, ..RankQuestion::default() };
+        answer_accessibility(&mut system, &question)
+    });
+    let made = |answer| Told::new(accessibility_json(&answer), accessibility_text(&answer));
+    let found = found.map_err(|cut| cut.map(|found| found.ok().map(made)).with_found(py))?;
+    found.map(made).map_err(|why| unusable(py, &why.to_string(), None))
+}
+
+/// The text of a system without what is not observable, as a proof file.
+#[pyfunction]
+pub fn reparametrised(py: Python<'_>, system: &System) -> PyResult<String> {
+    let mut system = Read::clone(system.read_system());
+    let found = interruptible(py, move |interrupt| {
+        let question = RankQuestion { samples: 0, interrupt, ..RankQuestion::default() };
+        let answer = palmistry::answer_rank(&mut system, &question).map_err(|why: RankError| why.to_string())?;
+        let [branch] = answer.branches.as_slice() else {
+            return Err("the conditions have several branches".to_owned());
+        };
+        let Some(found) = &branch.motions else {
+            return Err("all unknowns are locally observable already".to_owned());
+        };
+        let name = system.name.clone();
+        palmistry::observability::reparametrise(&system, found, &name).map_err(|why| why.to_string())
+    })?;
+    found.map_err(|why| unusable(py, &why, None))
+}
+
+/// A model of another program as a proof file: its text, its format, what was renamed, and remarks.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)]
+#[allow(clippy::type_complexity)]
+pub fn imported(
+    py: Python<'_>,
+    name: String,
+    text: String,
+    format: Option<String>,
+    model: Option<String>,
+    outputs: Vec<String>,
+    unknown: Option<Vec<String>>,
+    known_inputs: Vec<String>,
+    unknown_inputs: Vec<String>,
+    states: Vec<String>,
+) -> PyResult<(String, &'static str, Vec<(String, String)>, Vec<String>)> {
+    let format = match &format {
+        Some(word) => Some(ForeignFormat::ALL.into_iter().find(|one| one.name() == word).ok_or_else(|| {
+            let all = ForeignFormat::ALL.map(ForeignFormat::name).join(", ");
+            unusable(py, &format!("'{word}' is no format"), Some(&format!("these are {all}")))
+        })?),
+        None => None,
+    };
+    let unknowns = match unknown {
+        None => ForeignUnknowns::AsTheFileSays,
+        Some(names) => match names.as_slice() {
+            [all] if all == "all" => ForeignUnknowns::All,
+            [] => ForeignUnknowns::None,
+            _ => ForeignUnknowns::These(names),
+        },
+    };
+    let question = ImportQuestion { format, model, outputs, unknowns, known_inputs, unknown_inputs, states };
+    let found = interruptible(py, move |_| import(&name, &text, &question))?;
+    let found = found.map_err(|error| unreadable(py, &error))?;
+    Ok((found.text, found.format.name(), found.renamed, found.model.remarks))
+}
+
+/// The verdicts of a file, evaluated again by the checker alone, against the proof files in a folder.
+#[pyfunction]
+pub fn recheck(py: Python<'_>, verdicts: String, folder: PathBuf, seed: u64) -> PyResult<Told> {
+    let found = keeping(py, move |interrupt| {
+        let file = VerdictFile::read(&verdicts).map_err(|why| why.to_string())?;
+        let (sources, effort) = (ProofSources::below(folder), Effort::default());
+        let with = Checking { sources: &sources, seed, effort: &effort, interrupt };
+        let checked = file.check(with, &|| ());
+        let object = recheck_json(&file, &checked, interrupt.load(Ordering::Relaxed));
+        Ok::<_, String>(Told::new(object, recheck_text(&checked)))
+    });
+    let found = found.map_err(|cut| cut.map(Result::ok).with_found(py))?;
+    found.map_err(|why| unusable(py, &why, Some("write it by prove(), rank() or certify() with their method verdicts()")))
+}
