@@ -555,7 +555,9 @@ class Observation(Answer):
 
         states = self.updates[0]["states"] if self.updates else {}
         names = [name for name in self._found.sought() if name in states]
-        bounds = [numpy.inf if states[name]["bound"] is None else states[name]["bound"] for name in names]
+        # what was held is not off by what measurements could tell at best
+        is_held = bool(self.updates) and self.updates[0].get("held", False)
+        bounds = [numpy.inf if is_held or states[name]["bound"] is None else states[name]["bound"] for name in names]
         values = [states[name]["recovered"] for name in names]
         return Table({"name": numpy.array(names), "estimate": numpy.array(values, dtype=float), "deviation": numpy.array(bounds, dtype=float)})
 

@@ -124,7 +124,8 @@ class Traced:
 
 
 def _difference(a: Term, b: Term) -> Term:
-    return terms.total([a, terms.negative(b)])
+    # of a number below zero its size is added
+    return terms.total([a, Term(b.text[1:], terms.PRIMARY) if b.text.startswith("-") and b.text[1:].replace(".", "").isdigit() else terms.negative(b)])
 
 
 def _power(base: Term, exponent: Term) -> Term:

@@ -93,6 +93,12 @@ impl Update {
         fits && matches!(self.end, UpdateEnd::Converged | UpdateEnd::Stuck)
     }
 
+    /// Whether its estimate is no estimate, but what was believed before: the readings do not tell all that is sought. Its deviations are then what readings could tell at best,
+    /// and nothing of how far that belief is from the truth.
+    pub fn is_held(&self) -> bool {
+        matches!(self.end, UpdateEnd::Blind { .. })
+    }
+
     /// Whether the readings bear it out, and against a noise that was stated.
     pub(super) fn has_tested(&self) -> bool {
         self.is_borne_out() && self.fit.is_some_and(|fit| fit.from == NoiseFrom::Stated)

@@ -1,6 +1,6 @@
 //! Where searches end: what cannot be seen, other basins, mirror images. The recordings come from a method of Runge and Kutta in this file.
 
-use crate::common::{folder, write};
+use crate::common::{folder, palmistry, write};
 use crate::observe::observe;
 use serde_json::Value;
 use std::fmt::Write;
@@ -106,8 +106,16 @@ fn what_cannot_be_seen_is_decided_where_a_search_ends() {
     let scene = "title = \"Decay\"\nmodel = \"decay.proof\"\n[data]\nrecord = \"run.csv\"\n[sensor]\nnoise = 2e-3\n[observer]\n\
                  methods = [\"trust-region\"]\nestimate = [\"x\", \"k\", \"b\", \"c\"]\nguess = { x = 1, k = 1, b = 0.1, c = 0.1 }\n\
                  window = 60\nsteps = 50\n";
-    let (_, found) = observe(&write(&folder, "scene.toml", scene), &[]);
+    let scene = write(&folder, "scene.toml", scene);
+    let (_, found) = observe(&scene, &[]);
     assert_eq!(first(&found).0["standing"], "cannot see", "{found}");
+    // the guess that it keeps is not given what could be known of it as its own deviation
+    assert_eq!(first(&found).0["held"], true);
+    let output = palmistry(&["observe", scene.to_str().unwrap()]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    let held: Vec<&str> = text.lines().filter(|line| line.contains("not estimated, at best ±")).collect();
+    assert_eq!(held.len(), 4, "{text}");
+    assert!(held.iter().any(|line| line.contains("x ") && line.contains("1.000000000")), "{text}");
 }
 
 /// Susceptible and infectious parts of a population with unknown rates, from guesses anywhere in the box: every one arrives.

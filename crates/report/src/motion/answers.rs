@@ -99,6 +99,7 @@ pub(super) fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
     });
     if let UpdateEnd::Blind { weakest } = &update.end {
         found["unseen"] = json!(weakest);
+        found["held"] = json!(true);
     }
     if let Some(fit) = &update.fit {
         found["fit"] = json!({
@@ -284,7 +285,8 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
             };
             let (from, steps, fit) = (update.from, update.steps, fit_in_words(update));
             let _ = writeln!(text, "  from {from:.3} s: {standing} after {steps} steps{fit}{time}");
-            let known = Beside { bounds: &update.deviations, at_bounds: &update.at_bounds };
+            let known =
+                Beside { bounds: &update.deviations, at_bounds: &update.at_bounds, is_held: update.is_held() };
             state_lines(&mut text, observed, &names, update.from, &update.estimate, known);
             for line in suspects_in_words(update) {
                 let _ = writeln!(text, "    {line}");
@@ -292,7 +294,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         }
         if let Some(last) = answer.track.last() {
             let _ = writeln!(text, "  at the end, {:.3} s:", last.time);
-            let known = Beside { bounds: &last.deviations, at_bounds: &[] };
+            let known = Beside { bounds: &last.deviations, at_bounds: &[], is_held: false };
             state_lines(&mut text, observed, &names, last.time, &last.state, known);
         }
         if answer.track.unseen > 0 {
@@ -305,7 +307,8 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
                 other.from,
                 fit_in_words(other)
             );
-            let known = Beside { bounds: &other.deviations, at_bounds: &other.at_bounds };
+            let known =
+                Beside { bounds: &other.deviations, at_bounds: &other.at_bounds, is_held: other.is_held() };
             state_lines(&mut text, observed, &names, other.from, &other.estimate, known);
         }
         for line in verdict_lines(&answer.track) {
@@ -352,8 +355,15 @@ pub(super) fn state_lines(
     for (i, name) in names.iter().enumerate() {
         let name = state_name(observed, name);
         let _ = write!(text, "    {name:<8} {:>15.9}", recovered[i]);
-        if let Some(bound) = known.bounds.get(i) {
-            let _ = write!(text, " ± {bound:.1e}");
+        match known.bounds.get(i) {
+            // a belief that was kept is not off by what measurements could tell
+            Some(bound) if known.is_held => {
+                let _ = write!(text, "  not estimated, at best ± {bound:.1e}");
+            }
+            Some(bound) => {
+                let _ = write!(text, " ± {bound:.1e}");
+            }
+            None => {}
         }
         if let Some(truth) = &truth {
             let _ = write!(text, "  true {:>15.9}  error {:.1e}", truth[i], (recovered[i] - truth[i]).abs());
@@ -365,11 +375,12 @@ pub(super) fn state_lines(
     }
 }
 
-/// What is known beside recovered states: their standard deviations, which may be none, and those that are held at a bound.
+/// What is known beside recovered states: their standard deviations, which may be none, those that are held at a bound, and whether all are what was believed before.
 #[derive(Clone, Copy)]
 pub(super) struct Beside<'a> {
     pub bounds: &'a [f64],
     pub at_bounds: &'a [(usize, f64)],
+    pub is_held: bool,
 }
 
 /// In what unit errors and bounds are printed.

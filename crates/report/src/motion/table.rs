@@ -172,11 +172,12 @@ fn update_table(observed: &Observed<'_>, answer: &Answer) -> Markup {
                             None => { td { "-" } td { "-" } }
                         } }
                         td.n {
+                            @if update.is_held() { "not estimated, at best " }
                             (bound_in_words(deviation))
                             @if let Some((_, bound)) = update.at_bounds.iter().find(|own| own.0 == place) { ", held at " (bound) }
                         }
                         @if known { td.n { @match &truth {
-                            Some(truth) if deviation.is_finite() && deviation > 0.0 => {
+                            Some(truth) if deviation.is_finite() && deviation > 0.0 && !update.is_held() => {
                                 (format!("{:.1}", (value - truth[place]).abs() / deviation))
                             }
                             _ => { "-" }
