@@ -14,12 +14,21 @@
 # # Is my system observable?
 #
 # A robot in the plane has a position `(x, y)` and a heading `theta`. It drives and turns as it is told, and measures how far away a beacon is.
-# Can it know where it is? We write the system down as a paper would, and ask.
+# Can it know where it is? We write the system down as a paper would, and ask. With three beacons the answer looks like this: over the plane, how well it knows the worst of the three,
+# as a part of what it knew before.
+
+# %%
+import palmistry
+from workbench import SYSTEMS
+
+axes = palmistry.System.read(SYSTEMS / "beacons.proof").map("px", "py", at={"theta": 0.3, "v": 1, "w": 0.2}, size=80).plot()
+
+# %% [markdown]
+# What one beacon tells, and what two, comes now.
 
 # %%
 import matplotlib.pyplot as plt
 import numpy as np
-import workbench  # noqa: F401, pictures that are the same each time
 from matplotlib.colors import LogNorm
 from palmistry import System
 

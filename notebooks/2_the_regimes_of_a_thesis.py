@@ -15,7 +15,17 @@
 #
 # M. Moll's thesis (*Shape Reconstruction Using Active Tactile Sensors*, 2002) holds an unknown body between two palms and asks whether touch alone tells how it
 # moves. In each of four regimes it finds so many differentials of Lie derivatives that their determinant is not zero at one state. Here they are asked
-# about at thousands, and the determinants of appendix A.2 to forty digits.
+# about at thousands, and the determinants of appendix A.2 to forty digits. Below, over the two distances from the contacts to the body's centre of mass: how well the worst of ten unknowns is observable
+# in the general regime.
+
+# %%
+import palmistry
+from workbench import PROOFS
+
+general = palmistry.System.read(PROOFS / "moll2002" / "general.proof")
+HELD = {"r1": 1.5, "r2": 1.5, "omega0": 1, "s1": 1, "s2": 2, "phi1": 0.5, "omega1": 2, "phi2": 2, "omega2": 1.5, "rho": 0.5, "alpha1": 0, "alpha2": 0}
+others = {name: HELD[name] for name in general.coordinates() if name not in ("r1", "r2")}
+axes = general.map("r1", "r2", ranges={"r1": (0.2, 3), "r2": (0.2, 3)}, at=others, size=60).plot()
 
 # %%
 from decimal import Decimal, getcontext
@@ -25,7 +35,6 @@ import numpy as np
 from expanded import NAMES, A, determinant_of
 from matplotlib.colors import LogNorm
 from palmistry import System
-from workbench import PROOFS
 
 REGIMES = {
     "general": "both palms swing",
@@ -56,7 +65,6 @@ for found in ranks.values():
 # nearly the same. Drawn is the worst state, by all derivatives that were taken. All coordinates are held but two; at every point of the maps the rank is full, and certified.
 
 # %%
-HELD = {"r1": 1.5, "r2": 1.5, "omega0": 1, "s1": 1, "s2": 2, "phi1": 0.5, "omega1": 2, "phi2": 2, "omega2": 1.5, "rho": 0.5, "alpha1": 0, "alpha2": 0}
 MAPS = {
     "general": (("r1", 0.2, 3), ("r2", 0.2, 3)),
     "same_rate": (("omega0", -3, 3), ("phi1", -1.5, 1.5)),

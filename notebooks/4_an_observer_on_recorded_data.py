@@ -16,7 +16,14 @@
 # A robot has driven between three beacons and recorded, twenty times a second, its distances and what its motors did. Where was it, how sure is that, and what if a sensor
 # was not as it should be?
 #
-# The recording is a CSV file. This one is made by a few lines of Python that know nothing of Palmistry, so that they can say at the end what was true.
+# The recording is a CSV file. This one is made by a few lines of Python that know nothing of Palmistry, so that they can say at the end what was true. What comes out, of a scene that is shipped: each state
+# over time, with two standard deviations.
+
+# %%
+import palmistry
+from workbench import SYSTEMS
+
+axes = palmistry.observe(SYSTEMS / "beacons.toml").plot()
 
 # %%
 import tempfile
@@ -25,7 +32,6 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from palmistry import observe
-from workbench import SYSTEMS
 
 BEACONS = np.array([[-4.0, -3.0], [5.0, -2.0], [1.0, 6.0]])
 NAMES = ["sqrt((px + 4)^2 + (py + 3)^2)", "sqrt((px - 5)^2 + (py + 2)^2)", "sqrt((px - 1)^2 + (py - 6)^2)"]

@@ -22,6 +22,8 @@ import tempfile
 import xml.etree.ElementTree
 from pathlib import Path
 
+import matplotlib.pyplot as plt
+import numpy as np
 from palmistry import System
 from workbench import PROGRAM
 
@@ -52,7 +54,17 @@ claim jerk:    L(f, f, phi) = (-F*cos(phi) + m*l*omega^2*sin(phi)*cos(phi) - (M 
 claim seen:    rank = 4
 """
 
-claims = System.parse(CART).prove()
+system = System.parse(CART)
+claims = system.prove()
+angles = np.linspace(-1.5, 1.5, 41)
+at = {"m": 1, "M": 2, "l": 1, "g": 10, "omega": 1, "F": 0, "x": 0, "v": 0}
+printed, derived = ([float(system.eval(side, at=at | {"phi": angle})) for angle in angles] for side in claims["jerk"].statement.split(" = ")[::-1])
+plt.plot(angles, printed, label="as printed")
+plt.plot(angles, derived, label="as the equations of motion have it")
+plt.xlabel("phi, rad")
+plt.title("The second derivative of the angle")
+plt.legend()
+plt.show()
 {claim.id: claim.verdict for claim in claims}
 
 # %% [markdown]

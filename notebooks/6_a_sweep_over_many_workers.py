@@ -46,6 +46,7 @@ found = palmistry.sweep(system, samples=2e4, client=client, shards=7, folder=fol
 assert found.histogram == {10: 20000} and found.certified == 20000
 print("rank 10 at", found.histogram[10], "states, certified at", found.certified)
 print(*sorted(os.listdir(folder / "parts")), sep="\n")
+axes = found.plot()
 
 # %% [markdown]
 # In one run it is the same: not nearly, but in every digit of every field. Whose part is lost has it done again, and nothing else.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import textwrap
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from fractions import Fraction
@@ -328,13 +329,15 @@ class Recheck(Answer):
 class Map:
     """How well unknowns are observable over two coordinates."""
 
-    def __init__(self, x: str, y: str, grids: tuple[Any, Any], deviations: dict[str, Any]) -> None:
+    def __init__(self, x: str, y: str, grids: tuple[Any, Any], deviations: dict[str, Any], at: list[str]) -> None:
         #: The names of the coordinates.
         self.x, self.y = x, y
         #: Their values, of shape (columns,) and (rows,).
         self.grids = grids
         #: By unknown its standard deviation over its prior one, of shape (rows, columns): infinite where it is unobservable, NaN at a pole.
         self.deviations = deviations
+        #: The values that were fixed, as texts of the form name=value.
+        self.at = at
 
     @property
     def worst(self) -> numpy.ndarray:
@@ -356,9 +359,13 @@ class Map:
         scale = matplotlib.colormaps["viridis"].with_extremes(bad="white", over="black")
         low, high = (numpy.log10(finite.min()), numpy.log10(finite.max())) if finite.size else (0.0, 1.0)
         shown = numpy.where(numpy.isinf(values), high + 1 + abs(high), shown)
-        drawn = ax.pcolormesh(*self.grids, shown, cmap=scale, vmin=low, vmax=max(high, low + 1e-9), shading="nearest")
+        # each state in the middle of its cell
+        edges = [end for grid in self.grids for half in [(grid[-1] - grid[0]) / max(len(grid) - 1, 1) / 2] for end in (grid[0] - half, grid[-1] + half)]
+        drawn = ax.imshow(shown, origin="lower", extent=edges, aspect="auto", interpolation="nearest", cmap=scale, vmin=low, vmax=max(high, low + 1e-9))
         bar = ax.figure.colorbar(drawn, ax=ax, extend="max")
-        bar.set_label(f"log10 of the standard deviation over the prior one: {of or 'the least observable unknown'}")
+        bar.set_label(f"log10 of standard deviation / prior one,\n{of or 'least observable unknown'} (black: unobservable)")
+        if self.at:
+            ax.set_title(textwrap.fill("at " + ", ".join(pair.replace("=", " = ") for pair in self.at), 64), fontsize="small")
         ax.set_xlabel(self.x)
         ax.set_ylabel(self.y)
         return ax

@@ -109,6 +109,10 @@ def sweep(system, samples, *, client, shards=None, folder=None, seed=1, at=None,
     system: one that was read from a file, or the path of one, where all workers see it. samples: how many states are drawn. client: a `dask.distributed.Client`. shards: into how many parts the
     work is cut, eight for each worker's thread unless given. folder: where the parts are kept, which all workers see, the proof file's name with `.parts` unless given; what is there already is not done
     again, so that a sweep that was ended goes on where it was. seed, at, where, order: as in `System.rank`. threads: of each process. A worker that dies takes nothing with it: its shard is done again.
+
+    >>> palmistry.sweep(rod, samples=1e9, client=None)
+    Traceback (most recent call last):
+    palmistry.cluster.Failed: ... is no file that the workers could read: write the source of the system into one, and read that
     """
     from .answers import Rank
     from .program import path

@@ -109,6 +109,15 @@ def stream(scene: str | os.PathLike[str], pieces: Iterable[Any], *, times: bool 
 
     pieces: texts or bytes of comma-separated values, the first line with the names of columns; or rows as dicts, of which the first says the names. times: whether `seconds` are told.
     Memory is bounded by a window. A break ends the work.
+
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = pathlib.Path(folder, "decay.proof").write_text('system "s" state x drift f x\\' = -x output x sample x in [0, 2]')
+    ...     scene = pathlib.Path(folder, "scene.toml")
+    ...     _ = scene.write_text('title = "s"\\nmodel = "decay.proof"\\n[data]\\nrecord = "-"\\n[sensor]\\nnoise = 1e-3\\n[observer]\\nmethods = ["newton"]\\nestimate = ["x"]\\nguess = "sample"\\nwindow = 5\\n')
+    ...     rows = ({"time": 0.1*i, "x": numpy.exp(-0.1*i)} for i in range(11))
+    ...     answers = list(palmistry.stream(scene, rows))
+    >>> [answer.get("window") for answer in answers]
+    [1, 2, None]
     """
     native = _native.Stream(os.fspath(scene), times)
     try:

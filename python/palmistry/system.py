@@ -94,24 +94,45 @@ class System:
 
     @staticmethod
     def read(path: str | os.PathLike[str]) -> System:
-        """Reads a proof file. Raises ReadError, with the place, where it is none."""
+        """Reads a proof file. Raises ReadError, with the place, where it is none.
+
+        >>> palmistry.System.read("nowhere.proof")
+        Traceback (most recent call last):
+        palmistry.errors.ReadError: nowhere.proof:1:1: cannot read nowhere.proof: No such file or directory (os error 2)
+        """
         return System(_native.System.read(os.fspath(path)))
 
     @staticmethod
     def parse(text: str, name: str = "the text", folder: str | os.PathLike[str] = "") -> System:
-        """Reads a system from a text; what it imports is looked for in `folder`. Raises ReadError, with the place."""
+        """Reads a system from a text; what it imports is looked for in `folder`. Raises ReadError, with the place.
+
+        >>> palmistry.System.parse('system "A decay" state x drift f x\\' = -x output x')
+        <system 'A decay': 1 states, 1 outputs, 0 claims>
+        """
         return System(_native.System.parse(text, name, os.fspath(folder)))
 
     @staticmethod
     def from_sympy(states: Iterable[Any], fields: Any, outputs: Any, **options: Any) -> System:
-        """The system of SymPy's expressions; the arguments are those of `palmistry.from_sympy`, which returns the text of the proof file."""
+        """The system of SymPy's expressions; the arguments are those of `palmistry.from_sympy`, which returns the text of the proof file.
+
+        >>> import sympy
+        >>> x, k = sympy.symbols("x k")
+        >>> palmistry.System.from_sympy([x], [-k*x], [x], unknown=[k]).unknowns
+        ['x', 'k']
+        """
         from .translation import from_sympy
 
         return System.parse(from_sympy(states, fields, outputs, **options), "SymPy's system")
 
     @staticmethod
     def from_casadi(states: Any, fields: Any, outputs: Any, **options: Any) -> System:
-        """The system of CasADi's expressions; the arguments are those of `palmistry.from_casadi`, which returns the text of the proof file."""
+        """The system of CasADi's expressions; the arguments are those of `palmistry.from_casadi`, which returns the text of the proof file.
+
+        >>> import casadi
+        >>> x, k = casadi.SX.sym("x"), casadi.SX.sym("k")
+        >>> palmistry.System.from_casadi(x, -k*x, x, unknown=[k]).unknowns
+        ['x', 'k']
+        """
         from .translation import from_casadi
 
         return System.parse(from_casadi(states, fields, outputs, **options), "CasADi's system")
@@ -175,13 +196,20 @@ class System:
         return self._native.claims
 
     def unit(self, name: str) -> str | None:
-        """The unit of a symbol; None where the file says nothing of it."""
+        """The unit of a symbol; None where the file says nothing of it.
+
+        >>> palmistry.System.parse('system "s" state x : length drift f x\\' = 0 output x').unit("x")
+        'm'
+        """
         return self._native.unit(name)
 
     def prove(self, only: str | Iterable[str] = (), seed: int = 1, *, evidence: bool = False) -> Claims:
         """Decides the claims: each is proved, refuted with a witness, or undecided.
 
         only: ids, parts of ids before a dot, or patterns with '*'. seed: of the random points. evidence: keep what the verdicts rest on, for `Claims.evidence` and `Claims.recheck`.
+
+        >>> [(claim.id, claim.verdict) for claim in rod.prove()]
+        [('motion', 'proved'), ('sign', 'refuted')]
         """
         return _asked(Claims, lambda: self._native.prove(_several(only), seed, evidence))
 
@@ -205,6 +233,10 @@ class System:
         at: states and parameters held fixed, angles in radians. where: conditions, as 'sin(phi) = 0' or '0 < x < 1'.
         order: Lie derivatives of exactly up to this order. verdict: 'certified' or 'computed'. digits: of the worst state's singular values.
         table: a row a state in `.states`; coordinates: these too. times: whether `seconds` are given, which no two runs have alike.
+
+        >>> found = rod.rank(samples=100)
+        >>> found.generic, found.histogram, found.certified
+        (2, {2: 100}, 100)
         """
         asked = (samples, seed, _pairs(at), _several(where), order, _wanted(verdict), digits, times, table or coordinates, coordinates)
         return _asked(Rank, lambda: self._native.rank(*asked))
@@ -262,28 +294,51 @@ class System:
         return self.rank(samples=0).identifiable_functions
 
     def unobservable_directions(self) -> list[dict[str, str]] | None:
-        """Vector fields along which no output changes: of each its components by unknown, in the language; None where not all were found."""
+        """Vector fields along which no output changes: of each its components by unknown, in the language; None where not all were found.
+
+        >>> palmistry.System.parse('system "s" state a, b drift f a\\' = -a b\\' = a output a').unobservable_directions()
+        [{'b': '1'}]
+        """
         return self.rank(samples=0).unobservable_directions
 
     def singular_set(self, seed: int = 1) -> SingularSet:
-        """The sets on which the rank drops, each by its equations, with a proof that off them it does not: `palmistry rank --where-it-drops`."""
+        """The sets on which the rank drops, each by its equations, with a proof that off them it does not: `palmistry rank --where-it-drops`.
+
+        >>> beacon = palmistry.System.parse('system "s" state x, y drift f others\\' = 0 output x^2 + y^2, x*y')
+        >>> print(beacon.singular_set().text.splitlines()[2])
+        rank at most 1 where x - y = 0 (error below 2^-113)
+        """
         return _asked(SingularSet, lambda: _native.drops(self._native, seed))
 
     def global_(self, work: int | None = None) -> Solutions:
         """How many values of each unknown give the same outputs: one, finitely many over the complex numbers, or infinitely many. For rational systems, generically.
 
         work: how much may be done, in products of residues; what takes more is undecided.
+
+        >>> square = palmistry.System.parse('system "s" state x param k unknown drift f x\\' = -k^2*x output x')
+        >>> square.global_()
+        <solutions: x 1, k 2>
         """
         return _asked(Solutions, lambda: _native.solutions(self._native, work))
 
     def accessible(self, samples: int | None = None, *, seed: int = 1, at: At = None, where: str | Iterable[str] = (), order: int | None = None) -> Accessibility:
-        """Whether the drift and the inputs can move the state in every direction, by brackets. The arguments are those of `rank`."""
+        """Whether the drift and the inputs can move the state in every direction, by brackets. The arguments are those of `rank`.
+
+        >>> cart = palmistry.System.parse('system "s" state x, v drift f x\\' = v v\\' = 0 input g x\\' = 0 v\\' = 1 output x')
+        >>> print(cart.accessible(10).text.splitlines()[2])
+        accessibility: generic rank 2 of 2 (certain)
+        """
         return _asked(Accessibility, lambda: _native.accessible(self._native, samples, seed, _pairs(at), _several(where), order))
 
     def reparametrise(self, path: str | os.PathLike[str] | None = None) -> System:
         """The observable part of the system, as a system whose states are observable functions. Its claims, that it moves so and that the outputs are the same, are for `prove`.
 
         path: the proof file is written there too. This system has to come from a file, which the new one imports. Raises Error where all is observable already.
+
+        >>> rod.reparametrise()
+        Traceback (most recent call last):
+        palmistry.errors.Error: 'the text' is no file, which the new system would import
+        help: write the source into a file, and read that
         """
         if not os.path.isfile(self.name):
             raise Error(f"'{self.name}' is no file, which the new system would import", "write the source into a file, and read that")
@@ -300,6 +355,9 @@ class System:
 
         at: values by name, angles in radians; what is left out has the value of the file. A float is taken for the decimal that Python prints.
         Raises EvaluationError where there is no value, ReadError where the expression is none.
+
+        >>> print(rod.eval("L(f, f, phi)", at={"phi": "1/3"}))
+        -0.65438939359230448835
         """
         if not 1 <= digits <= 10_000:
             raise Error(f"{digits} digits are not possible", "between 1 and 10000 are")
@@ -312,7 +370,11 @@ class System:
         return self._deciders[key]
 
     def coordinates(self, at: At = None, order: int | None = None) -> list[str]:
-        """The coordinates that a state has in `verdicts`, in this order: states, and parameters without a value."""
+        """The coordinates that a state has in `verdicts`, in this order: states, and parameters without a value.
+
+        >>> rod.coordinates()
+        ['phi', 'omega']
+        """
         return self._decider(at, order).coordinates
 
     def verdicts(
@@ -330,6 +392,9 @@ class System:
         Fortran's order, or arrays by name. verdict: what every rank has to be; the cheapest numbers that suffice are taken, and better ones where a
         state needs them. A rank that is short is certified where the state is rational, that is where no sine of a double stands in the rows.
         at, order: as in `rank`. Whether a state lies in the sample box is not asked.
+
+        >>> rod.verdicts(numpy.array([[0.1, 0.2], [3.0, -1.0]])).rank
+        array([2, 2])
         """
         decider = self._decider(at, order, _wanted(verdict))
         return Verdicts(**decider.verdicts(_arrays(states, decider.coordinates)))
@@ -346,6 +411,9 @@ class System:
         A column an unknown, of shape (states,); infinite where it is unobservable, or not distinguishable from it; NaN at a pole. These are the
         numbers of the maps: every Lie derivative of up to `order` fields is measured up to the standard deviation of its values over the sample
         box. states, at: as in `verdicts`. Computed in doubles, and not certified.
+
+        >>> rod.standard_deviations({"phi": numpy.array([0.1]), "omega": numpy.array([0.2])})["phi"].round(3)
+        array([1.024])
         """
         names = self.coordinates(at, order)
         return Table(self._native.standard_deviations(_pairs(at), order, names, _arrays(states, names)))
@@ -353,8 +421,11 @@ class System:
     def map(self, x: str, y: str, *, ranges: Mapping[str, Any] | None = None, at: At = None, size: int | tuple[int, int] = 60, order: int | None = None) -> Map:
         """How well each unknown is observable over two coordinates, as `standard_deviations` has it.
 
-        x, y: names of coordinates. ranges: of these, as (low, high); -1 to 1 unless given here or by the file's sample box. at: values of all others, which have to have one here or in the
-        file. size: of the grid, columns and rows.
+        x, y: names of coordinates. ranges: of these, as (low, high); those of the file's sample box unless given. at: values of all other coordinates: none is chosen here, since round numbers
+        are often where something special happens. size: of the grid, columns and rows.
+
+        >>> rod.map("phi", "omega", size=(8, 5))
+        <map over phi and omega: 5 x 8 states>
         """
         import numpy
 
@@ -370,11 +441,12 @@ class System:
             if name not in needed:
                 raise Error(f"'{name}' is no coordinate", f"these are {', '.join(needed)}")
         others = [name for name in needed if name not in (x, y)]
-        middle = {name: sum(box.get(name, (-1.0, 1.0))) / 2 for name in others}
+        if others:
+            raise Error(f"{', '.join(others)} {'has' if len(others) == 1 else 'have'} no value", f"give one of each, as in at={{'{others[0]}': ...}}")
         xs, ys = (grid.ravel() for grid in numpy.meshgrid(*grids))
-        states = {x: xs, y: ys, **{name: numpy.full(xs.shape, middle[name]) for name in others}}
+        states = {x: xs, y: ys}
         found = self.standard_deviations({name: states[name] for name in needed}, at=at, order=order)
-        return Map(x, y, (grids[0], grids[1]), {name: found[name].reshape(rows, columns) for name in found})
+        return Map(x, y, (grids[0], grids[1]), {name: found[name].reshape(rows, columns) for name in found}, _pairs(at))
 
     def certify(
         self,
@@ -391,6 +463,9 @@ class System:
         box: other ranges by name, as (low, high); one number holds it fixed. boxes: look at so many boxes, which gives the same result everywhere;
         otherwise for `budget` seconds. rows: 'codistribution' or 'own', the file's matrix of that name. order: as in `rank`.
         map: the two coordinates of the picture.
+
+        >>> rod.certify(boxes=10)
+        <full rank proved on 1 of the box>
         """
         if rows not in ("codistribution", "own"):
             raise Error(f"'{rows}' are no rows", "these are 'codistribution' and 'own'")
@@ -451,6 +526,14 @@ def recheck_file(path: str | os.PathLike[str], *, proofs: str | os.PathLike[str]
     `python -m palmistry.recheck`.
 
     proofs: the folder from which the names of proof files are read. seed: of the states at which proofs are tried. `Claims.recheck` does the same of what `prove` has found.
+
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder, "rod.proof")
+    ...     _ = file.write_text(rod.source)
+    ...     verdicts = pathlib.Path(folder, "verdicts.json")
+    ...     _ = verdicts.write_text(palmistry.System.read(file).prove(evidence=True).evidence)
+    ...     palmistry.recheck_file(verdicts, proofs="/").ok
+    True
     """
     with open(path, encoding="utf-8") as file:
         return rechecked(file.read(), proofs, seed)
@@ -461,7 +544,11 @@ def rechecked(text: str, proofs: str | os.PathLike[str], seed: int) -> Recheck:
 
 
 def threads(count: int | None) -> None:
-    """From now on so many threads share the work of each question; None leaves it to RAYON_NUM_THREADS and the machine. No answer depends on it."""
+    """From now on so many threads share the work of each question; None leaves it to RAYON_NUM_THREADS and the machine. No answer depends on it.
+
+    >>> palmistry.threads(1)
+    >>> palmistry.threads(None)
+    """
     if count is not None and count < 1:
         raise Error(f"{count} threads cannot work", "one or more can; None takes all processors")
     _native.set_threads(count or 0)
@@ -483,6 +570,12 @@ def import_model(
     Nothing of the file is executed. format: 'julia', 'sbml', 'strikepy', 'strike-goldd' or 'formulas', found out unless given. model: which of several, by name or number. outputs: in place of
     those of the file. unknown: parameters that are to be identified, 'all', or [] for none; what the file says unless given. inputs, unknown_inputs: parameters that are signals which
     somebody, or nobody, knows. states: in the order of a vector of rates. What was renamed and what else is worth knowing stands in comments of `source`.
+
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder, "decay.txt")
+    ...     _ = file.write_text("x' = -k*x")
+    ...     palmistry.import_model(file, outputs="x", unknown="k").unknowns
+    ['x', 'k']
     """
     with open(path, encoding="utf-8") as file:
         text = file.read()
@@ -492,7 +585,15 @@ def import_model(
 
 
 def verify(folder: str | os.PathLike[str], *, seed: int = 1, times: bool = True) -> Page:
-    """Takes a paper, a folder or one proof file, through everything, into a page; `.json` is what was found."""
+    """Takes a paper, a folder or one proof file, through everything, into a page; `.json` is what was found.
+
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder, "rod.proof")
+    ...     _ = file.write_text(rod.source)
+    ...     page = palmistry.verify(file)
+    >>> page.html.startswith("<!DOCTYPE html>")
+    True
+    """
     import json
 
     found, page = _native.verify(os.fspath(folder), seed, times)
@@ -500,5 +601,9 @@ def verify(folder: str | os.PathLike[str], *, seed: int = 1, times: bool = True)
 
 
 def latex(text: str) -> str | None:
-    """An expression or a statement of the language in LaTeX; None where the text is neither."""
+    """An expression or a statement of the language in LaTeX; None where the text is neither.
+
+    >>> palmistry.latex("sin(phi)^2/2")
+    '\\\\frac{\\\\sin^{2}\\\\left(\\\\varphi\\\\right)}{2}'
+    """
     return _native.latex(text)

@@ -164,6 +164,11 @@ def from_sympy(
     identified. known: signals that are known, as inputs that enter otherwise than linearly. angles: states in radians that are met inside sines and
     cosines only. sample: ranges, by symbol, as (low, high). claims: statements of the language, by id. A Float is the decimal that SymPy prints.
     Raises Error where an expression has no counterpart in the language.
+
+    >>> import sympy
+    >>> x, k = sympy.symbols("x k")
+    >>> print(palmistry.from_sympy([x], [-k*x], [x], unknown=[k]).splitlines()[3])
+    param k unknown
     """
     from . import sympy_terms
 
@@ -191,6 +196,11 @@ def from_casadi(
 
     The arguments are those of `from_sympy`; lists may be column vectors, and a symbol that is a vector `x` has the components `x_0`, `x_1`, ... What
     an expression uses more than once becomes an abbreviation. Symbols may be named by texts as well.
+
+    >>> import casadi
+    >>> x = casadi.SX.sym("x")
+    >>> print(palmistry.from_casadi(x, -x, x).splitlines()[2])
+    state x
     """
     from . import casadi_terms
 

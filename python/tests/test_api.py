@@ -6,13 +6,17 @@
 import doctest
 import importlib
 import inspect
+import operator
 import os
+import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 import textwrap
 import unittest
 
+import numpy
 from common import ROOT
 
 import palmistry
@@ -21,8 +25,31 @@ PAGE = os.path.join(ROOT, "book", "src", "python_api.md")
 
 HEAD = """# The Python package, name by name
 
-Made from the package's signatures and docstrings by `python/tests/test_api.py`, which also runs every example. [Commands and options in Python](python_names.md) goes the other way.
+Made from the package's signatures and docstrings by `python/tests/test_api.py`, which also runs every example. [Commands and options in Python](python_names.md) goes the other way. Examples begin with
 
+```python not run: python/tests/test_api.py runs it
+import pathlib, tempfile, numpy, palmistry
+
+rod = palmistry.System.parse('''
+SYSTEM''')
+```
+
+"""
+
+#: The system of the examples.
+ROD = """system "A pendulum"
+state phi, omega
+param k = 2
+angle phi
+drift f
+  phi'   = omega
+  omega' = -k*sin(phi)
+output phi
+sample
+  phi   in [-3, 3]
+  omega in [-2, 2]
+claim motion: L(f, f, phi) = -k*sin(phi)
+claim sign:   L(f, omega) = k*sin(phi)
 """
 
 #: In the order in which a reader needs them.
@@ -58,7 +85,7 @@ def members(kind):
 
 
 def page():
-    lines = [HEAD.rstrip()]
+    lines = [HEAD.replace("SYSTEM", ROD).rstrip()]
     for name in ORDER:
         value = getattr(palmistry, name)
         lines += ["", f"## {name}", ""]
@@ -99,9 +126,18 @@ class Api(unittest.TestCase):
         self.assertEqual(silent, [])
 
     def test_examples_in_docstrings(self):
+        names = {"pathlib": pathlib, "tempfile": tempfile, "numpy": numpy, "palmistry": palmistry, "rod": palmistry.System.parse(ROD)}
         for module in ("answers", "cluster", "observing", "program", "system", "tables", "traced", "translation"):
-            found = doctest.testmod(importlib.import_module(f"palmistry.{module}"))
-            self.assertEqual(found.failed, 0, module)
+            found = doctest.testmod(importlib.import_module(f"palmistry.{module}"), extraglobs=names, optionflags=doctest.ELLIPSIS)
+            with self.subTest(module):
+                self.assertEqual(found.failed, 0)
+
+    def test_every_function_has_an_example(self):
+        """So has every method of a system: what answers have are shown where they come from."""
+        asked = [name for name in ORDER if inspect.isfunction(getattr(palmistry, name))]
+        asked += [f"System.{name}" for name, what in members(palmistry.System) if inspect.isfunction(getattr(what, "__func__", what))]
+        silent = [name for name in asked if ">>>" not in (inspect.getdoc(operator.attrgetter(name)(palmistry)) or "")]
+        self.assertEqual(silent, [])
 
     def test_types(self):
         try:

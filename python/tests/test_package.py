@@ -324,13 +324,14 @@ class Measurements(unittest.TestCase):
 class Pictures(unittest.TestCase):
     def test_a_map_has_the_values_of_its_states(self):
         system = palmistry.System.read(os.path.join(SYSTEMS, "beacons.proof"))
-        drawn = system.map("px", "py", size=(7, 5), ranges={"px": (-2, 2), "py": (-1, 1)}, at={"theta": "0.3"})
+        drawn = system.map("px", "py", size=(7, 5), ranges={"px": (-2, 2), "py": (-1, 1)}, at={"theta": "0.3", "v": 1, "w": "0.2"})
         self.assertEqual(drawn.worst.shape, (5, 7))
-        box = system._native.sample_box()
-        states = {name: numpy.array([sum(box[name]) / 2]) for name in ("v", "w")} | {"px": numpy.array([drawn.grids[0][2]]), "py": numpy.array([drawn.grids[1][3]])}
-        alone = system.standard_deviations(states, at={"theta": "0.3"})
+        states = {"px": numpy.array([drawn.grids[0][2]]), "py": numpy.array([drawn.grids[1][3]])}
+        alone = system.standard_deviations(states, at={"theta": "0.3", "v": 1, "w": "0.2"})
         for name in alone:
             self.assertEqual(drawn.deviations[name][3, 2], alone[name][0])
+        with self.assertRaisesRegex(Error, "v, w have no value"):
+            system.map("px", "py", at={"theta": 0})
         with self.assertRaisesRegex(Error, "no coordinate"):
             system.map("px", "nothing")
 
