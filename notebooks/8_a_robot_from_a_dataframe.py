@@ -60,7 +60,7 @@ robot = palmistry.System.from_function(
     rates, distances, states="px, py, theta", parameters="bias", unknown="bias", inputs="v, gyro", angles="theta",
     sample={"px": (-3, 3), "py": (-4, 2), "theta": (-2, 2), "bias": (-0.2, 0.2)},
 )
-found = palmistry.observe(robot, log, noise=NOISE)
+found = palmistry.observe(robot, log, noise=NOISE, times=False)
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(8, 3.6), width_ratios=(1, 1.2))
 left.plot(*BEACONS.T, "k^", label="beacons")
