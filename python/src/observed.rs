@@ -147,8 +147,11 @@ impl ObservationFound {
             return Ok(None);
         };
         let task = experiment.task(&NEVER).map_err(|error| crate::errors::unreadable(py, &error))?;
-        let compared: Vec<_> =
-            track.estimates.iter().filter(|sample| sample.residual.len() == task.full.outputs.len()).collect();
+        let compared: Vec<_> = track
+            .estimates
+            .iter()
+            .filter(|sample| sample.residual.len() == task.full.outputs.len())
+            .collect();
         if compared.is_empty() {
             return Ok(None);
         }
@@ -167,8 +170,7 @@ impl ObservationFound {
         let update = self.track().and_then(|track| track.updates.get(window));
         let Some(whole) = update.and_then(|update| update.covariance.as_ref()) else { return Ok(None) };
         let sought = self.sought().len().min(whole.nrows());
-        let rows: Vec<Vec<f64>> =
-            (0..sought).map(|i| (0..sought).map(|j| whole[(i, j)]).collect()).collect();
+        let rows: Vec<Vec<f64>> = (0..sought).map(|i| (0..sought).map(|j| whole[(i, j)]).collect()).collect();
         Ok(Some(PyArray2::from_vec2(py, &rows)?))
     }
 }

@@ -70,7 +70,8 @@ pub fn reparametrised(py: Python<'_>, system: &System) -> PyResult<String> {
     let mut system = Read::clone(system.read_system());
     let found = interruptible(py, move |interrupt| {
         let question = RankQuestion { samples: 0, interrupt, ..RankQuestion::default() };
-        let answer = palmistry::answer_rank(&mut system, &question).map_err(|why: RankError| why.to_string())?;
+        let answer =
+            palmistry::answer_rank(&mut system, &question).map_err(|why: RankError| why.to_string())?;
         let [branch] = answer.branches.as_slice() else {
             return Err("the conditions have several branches".to_owned());
         };
@@ -100,10 +101,12 @@ pub fn imported(
     states: Vec<String>,
 ) -> PyResult<(String, &'static str, Vec<(String, String)>, Vec<String>)> {
     let format = match &format {
-        Some(word) => Some(ForeignFormat::ALL.into_iter().find(|one| one.name() == word).ok_or_else(|| {
-            let all = ForeignFormat::ALL.map(ForeignFormat::name).join(", ");
-            unusable(py, &format!("'{word}' is no format"), Some(&format!("these are {all}")))
-        })?),
+        Some(word) => {
+            Some(ForeignFormat::ALL.into_iter().find(|one| one.name() == word).ok_or_else(|| {
+                let all = ForeignFormat::ALL.map(ForeignFormat::name).join(", ");
+                unusable(py, &format!("'{word}' is no format"), Some(&format!("these are {all}")))
+            })?)
+        }
         None => None,
     };
     let unknowns = match unknown {
@@ -132,5 +135,7 @@ pub fn recheck(py: Python<'_>, verdicts: String, folder: PathBuf, seed: u64) -> 
         Ok::<_, String>(Told::new(object, recheck_text(&checked)))
     });
     let found = found.map_err(|cut| cut.map(Result::ok).with_found(py))?;
-    found.map_err(|why| unusable(py, &why, Some("write it by prove(), rank() or certify() with their method verdicts()")))
+    found.map_err(|why| {
+        unusable(py, &why, Some("write it by prove(), rank() or certify() with their method verdicts()"))
+    })
 }

@@ -95,7 +95,8 @@ fn told(py: Python<'_>, found: Result<Found, Cut<Found>>) -> PyResult<Observatio
     found.map_err(|trouble| match trouble {
         Trouble::Read(error) => unreadable(py, &error),
         Trouble::NoStudies => {
-            let message = "the scene has no studies, or its measurements come from a file, which knows no truth";
+            let message =
+                "the scene has no studies, or its measurements come from a file, which knows no truth";
             let help = "leave out studies=True, or add [study.noise], [study.basin] or [study.curvature]";
             unusable(py, message, Some(help))
         }

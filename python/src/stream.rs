@@ -3,9 +3,9 @@
 use crate::answers::printed;
 use crate::errors::{unreadable, unusable};
 use crate::work::pool;
+use palmistry::ReadError;
 use palmistry::experiment::{Scene, StreamPiece, WindowReport, observe_stream};
 use palmistry::report::{forget_seconds, stream_end_json, stream_json};
-use palmistry::ReadError;
 use pyo3::prelude::*;
 use serde_json::Value;
 use std::path::PathBuf;
@@ -58,9 +58,8 @@ impl Stream {
                     Err(RecvTimeoutError::Timeout) => StreamPiece::Nothing,
                     Err(RecvTimeoutError::Disconnected) => StreamPiece::End,
                 };
-                let mut tell = |report: &WindowReport<'_>| {
-                    reports.send(Report::Line(line(stream_json(report)))).is_ok()
-                };
+                let mut tell =
+                    |report: &WindowReport<'_>| reports.send(Report::Line(line(stream_json(report)))).is_ok();
                 let last = match observe_stream(scene, &flag, &mut next, &mut tell) {
                     Ok(end) => Report::Line(line(stream_end_json(&end, flag.load(Ordering::Relaxed)))),
                     Err(error) => Report::Failed(error.into()),
@@ -81,7 +80,9 @@ impl Stream {
                 let pieces = self.pieces.lock().unwrap_or_else(PoisonError::into_inner);
                 match pieces.as_ref().map(|pieces| pieces.try_send(piece)) {
                     // who has ended takes no more, and has said why
-                    None | Some(Ok(()) | Err(std::sync::mpsc::TrySendError::Disconnected(_))) => return Ok(()),
+                    None | Some(Ok(()) | Err(std::sync::mpsc::TrySendError::Disconnected(_))) => {
+                        return Ok(());
+                    }
                     Some(Err(std::sync::mpsc::TrySendError::Full(piece))) => piece,
                 }
             };

@@ -94,11 +94,25 @@ impl MultipleShooting {
 
     /// What explains the rows: the best state first, then others that fit as well.
     ///
-    /// Where nothing fits on the whole window, what fits on its first half is where the search on the whole begins: over
-    /// a shorter time there are fewer false minima. What segments leave far more of than noise explains is one as a rule, and is followed to its
-    /// end only after that.
+    /// Where nothing fits on the whole window, segments half as long may meet fewer false minima, and what fits on its first half is where the search on the whole
+    /// begins next: over a shorter time there are fewer as well. What segments leave far more of than noise explains is one as a rule, and is followed to its end only after that.
     pub fn solutions(
         &self,
+        task: &Task<'_>,
+        belief: &[f64],
+        rows: &Range<usize>,
+        clamped: &[usize],
+    ) -> Vec<Update> {
+        let segments = 2 * self.shooting.segments;
+        let finer = Shooting { segments, ..self.shooting };
+        let finer = (segments < rows.len()).then_some(MultipleShooting { shooting: finer, ..*self });
+        self.solutions_by(finer, task, belief, rows, clamped)
+    }
+
+    /// The same, with other segments where these come to nothing.
+    fn solutions_by(
+        &self,
+        finer: Option<MultipleShooting>,
         task: &Task<'_>,
         belief: &[f64],
         rows: &Range<usize>,
@@ -111,10 +125,16 @@ impl MultipleShooting {
         let mut updates = Vec::new();
         self.end_all(task, near, told, &mut updates);
         let is_answered = |updates: &[Update]| updates.iter().any(|update| is_answer(task, update));
+        if let Some(finer) = finer.filter(|_| !is_answered(&updates) && !task.interrupted()) {
+            let mut near = finer.candidates(task, belief, rows, clamped);
+            near.retain(|candidate| !candidate.is_far);
+            self.end_all(task, near, told, &mut updates);
+        }
         let half = rows.start..rows.start + rows.len() / 2 + 1;
         let is_long = half.len() * task.full.outputs.len() > FEWEST * task.full.states.len();
         if !is_answered(&updates) && is_long && !task.interrupted() {
-            let shorter = self.solutions(task, belief, &half, clamped);
+            // segments of a half are finer already
+            let shorter = self.solutions_by(None, task, belief, &half, clamped);
             for update in shorter.into_iter().filter(Update::is_borne_out) {
                 keep(task, &mut updates, self.window.end(task, &update.estimate, told, None));
             }

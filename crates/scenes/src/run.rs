@@ -98,7 +98,11 @@ impl Experiment {
     ///
     /// # Errors
     /// As for [`Experiment::new`].
-    pub fn measured(scene: Scene, system: System, measured: Measurements<'_>) -> Result<Experiment, SceneError> {
+    pub fn measured(
+        scene: Scene,
+        system: System,
+        measured: Measurements<'_>,
+    ) -> Result<Experiment, SceneError> {
         let ground = Groundwork::with_system(scene, system, false)?;
         match measured {
             Measurements::File(file) => Experiment::on(ground, Some(file)),

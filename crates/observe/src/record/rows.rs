@@ -83,7 +83,12 @@ impl RecordRows {
         };
         let rows = (0..length).map(row).collect();
         let names = held.into_iter().map(|(name, _)| name).collect();
-        RecordRows::of_table(Path::new(name), Table { names, rows, foreign: BTreeMap::new() }, needed, columns)
+        RecordRows::of_table(
+            Path::new(name),
+            Table { names, rows, foreign: BTreeMap::new() },
+            needed,
+            columns,
+        )
     }
 
     fn of_table(

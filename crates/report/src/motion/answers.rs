@@ -285,8 +285,11 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
             };
             let (from, steps, fit) = (update.from, update.steps, fit_in_words(update));
             let _ = writeln!(text, "  from {from:.3} s: {standing} after {steps} steps{fit}{time}");
-            let known =
-                Beside { bounds: &update.deviations, at_bounds: &update.at_bounds, is_held: update.is_held() };
+            let known = Beside {
+                bounds: &update.deviations,
+                at_bounds: &update.at_bounds,
+                is_held: update.is_held(),
+            };
             state_lines(&mut text, observed, &names, update.from, &update.estimate, known);
             for line in suspects_in_words(update) {
                 let _ = writeln!(text, "    {line}");

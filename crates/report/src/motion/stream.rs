@@ -96,8 +96,11 @@ pub fn stream_text(report: &WindowReport<'_>, is_timed: bool) -> String {
                 ),
             };
             let _ = writeln!(text, "  from {:.6} s: {standing}", update.from);
-            let known =
-                Beside { bounds: &update.deviations, at_bounds: &update.at_bounds, is_held: update.is_held() };
+            let known = Beside {
+                bounds: &update.deviations,
+                at_bounds: &update.at_bounds,
+                is_held: update.is_held(),
+            };
             state_lines(&mut text, &observed, &names, update.from, &update.estimate, known);
             for line in suspects_in_words(update) {
                 let _ = writeln!(text, "    {line}");
