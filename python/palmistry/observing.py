@@ -129,7 +129,7 @@ def stream(scene: str | os.PathLike[str], pieces: Iterable[Any], *, times: bool 
                     names = [str(name) for name in piece]
                     head = ",".join('"' + name.replace('"', '""') + '"' for name in names) + "\n"
                 piece = head + ",".join(repr(float(piece[name])) for name in names) + "\n"
-            native.put(list(piece.encode()) if isinstance(piece, str) else list(piece))
+            native.put(piece.encode() if isinstance(piece, str) else bytes(piece))
             while (line := native.ready()) is not None:
                 yield json.loads(line)
         native.close()

@@ -73,8 +73,8 @@ impl Stream {
     }
 
     /// Hands over some comma-separated values. What is full is waited for.
-    fn put(&self, py: Python<'_>, bytes: Vec<u8>) -> PyResult<()> {
-        let mut piece = StreamPiece::Bytes(bytes);
+    fn put(&self, py: Python<'_>, bytes: &[u8]) -> PyResult<()> {
+        let mut piece = StreamPiece::Bytes(bytes.to_vec());
         loop {
             let full = {
                 let pieces = self.pieces.lock().unwrap_or_else(PoisonError::into_inner);

@@ -22,7 +22,7 @@ mod pictures;
 use pages::{go_through, pages};
 
 /// How many blocks are not run; each says why.
-const NOT_RUN: usize = 31;
+const NOT_RUN: usize = 25;
 
 #[test]
 fn every_block_is_run_and_shows_its_output() {
@@ -51,5 +51,7 @@ fn every_block_is_run_and_shows_its_output() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
     assert!(run > 40, "{run} blocks are run");
+    // these are run, by tests that have the Python package
+    not_run.retain(|line| !line.contains(": python/tests/"));
     assert_eq!(not_run.len(), NOT_RUN, "not run:\n{}", not_run.join("\n"));
 }
