@@ -535,8 +535,7 @@ def recheck_file(path: str | os.PathLike[str], *, proofs: str | os.PathLike[str]
     ...     palmistry.recheck_file(verdicts, proofs="/").ok
     True
     """
-    with open(path, encoding="utf-8") as file:
-        return rechecked(file.read(), proofs, seed)
+    return _asked(Recheck, lambda: _native.recheck_file(os.fspath(path), os.fspath(proofs), seed))
 
 
 def rechecked(text: str, proofs: str | os.PathLike[str], seed: int) -> Recheck:
@@ -577,10 +576,8 @@ def import_model(
     ...     palmistry.import_model(file, outputs="x", unknown="k").unknowns
     ['x', 'k']
     """
-    with open(path, encoding="utf-8") as file:
-        text = file.read()
     asked = (format, None if model is None else str(model), _several(outputs), None if unknown is None else _several(unknown), _several(inputs), _several(unknown_inputs), _several(states))
-    proof, _, _, _ = _native.imported(os.fspath(path), text, *asked)
+    proof, _, _, _ = _native.imported(os.fspath(path), *asked)
     return System.parse(proof, os.fspath(path))
 
 

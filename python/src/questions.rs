@@ -4,8 +4,10 @@ use crate::errors::{given, unreadable, unusable};
 use crate::system::System;
 use crate::told::Told;
 use crate::work::{interruptible, keeping};
-use palmistry::checker::{Checking, Effort, ProofSources, VerdictFile};
+use palmistry::checker::{Checking, Effort, LARGEST_FILE, ProofSources, VerdictFile};
 use palmistry::drops::where_it_drops;
+use palmistry::file::read_text;
+use palmistry::foreign::name_of;
 use palmistry::import::{ForeignFormat, ForeignUnknowns, ImportQuestion, import};
 use palmistry::report::{
     accessibility_json, accessibility_text, drops_json, drops_page, drops_text, global_json, global_text,
@@ -17,6 +19,9 @@ use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
+
+/// Models of other programs that are longer than this are refused, as by the program.
+const LONGEST_MODEL: u64 = 16 << 20;
 
 /// How many values of each unknown give the same outputs.
 #[pyfunction]
@@ -90,8 +95,7 @@ pub fn reparametrised(py: Python<'_>, system: &System) -> PyResult<String> {
 #[allow(clippy::type_complexity)]
 pub fn imported(
     py: Python<'_>,
-    name: String,
-    text: String,
+    path: PathBuf,
     format: Option<String>,
     model: Option<String>,
     outputs: Vec<String>,
@@ -118,12 +122,24 @@ pub fn imported(
         },
     };
     let question = ImportQuestion { format, model, outputs, unknowns, known_inputs, unknown_inputs, states };
+    let name = name_of(&path);
+    let text = interruptible(py, move |_| read_text(&path, LONGEST_MODEL))?;
+    let text = text.map_err(|why| unusable(py, &format!("cannot read {name}: {why}"), None))?;
     let found = interruptible(py, move |_| import(&name, &text, &question))?;
     let found = found.map_err(|error| unreadable(py, &error))?;
     Ok((found.text, found.format.name(), found.renamed, found.model.remarks))
 }
 
-/// The verdicts of a file, evaluated again by the checker alone, against the proof files in a folder.
+/// The same as [`recheck`] of a file of verdicts.
+#[pyfunction]
+pub fn recheck_file(py: Python<'_>, path: PathBuf, folder: PathBuf, seed: u64) -> PyResult<Told> {
+    let name = name_of(&path);
+    let text = interruptible(py, move |_| read_text(&path, LARGEST_FILE))?;
+    let text = text.map_err(|why| unusable(py, &format!("cannot read {name}: {why}"), None))?;
+    recheck(py, text, folder, seed)
+}
+
+/// Verdicts, evaluated again by the checker alone, against the proof files in a folder.
 #[pyfunction]
 pub fn recheck(py: Python<'_>, verdicts: String, folder: PathBuf, seed: u64) -> PyResult<Told> {
     let found = keeping(py, move |interrupt| {

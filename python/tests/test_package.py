@@ -116,6 +116,13 @@ class TheProgram(unittest.TestCase):
         self.assertGreaterEqual(checked.table.rows, len(claims))
         with self.assertRaises(Error):
             palmistry.recheck_file(__file__)
+        with self.assertRaisesRegex(Error, "cannot read nowhere.json"):
+            palmistry.recheck_file("nowhere.json")
+        with tempfile.NamedTemporaryFile(suffix=".jl") as file:
+            file.write(b"\xff\xfe@ODEmodel")
+            file.flush()
+            with self.assertRaisesRegex(Error, "cannot read"):
+                palmistry.import_model(file.name)
 
     def test_a_reparametrised_system(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -278,6 +285,12 @@ class Measurements(unittest.TestCase):
         self.assertEqual([observer["method"] for observer in found.observers], ["trust-region"])
         bounded = palmistry.observe(self.system, data, noise=1e-3, bounds={"k": (2.5, 4)})
         self.assertFalse(bounded.fits)
+
+    def test_any_title(self):
+        title = 'A "decay" \\ \u00e9 \U0001f600 \x7f'
+        system = palmistry.System.from_function(lambda x: [-x[0]], lambda x: x[0], states="x", title=title.replace('"', ""), sample={"x": (0, 2)})
+        found = palmistry.observe(system, {"time": self.times, "x": numpy.exp(-self.times)}, noise=1e-6)
+        self.assertTrue(found.fits)
 
     def test_mistakes(self):
         good = {"time": self.times, "phi": self.phi}
