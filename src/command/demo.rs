@@ -62,8 +62,12 @@ impl Demo {
         super::new::fill(folder, FILES).map_err(|error| {
             Unusable::report(format!("cannot make {}: {error}", shown_path(folder)), "choose another place")
         })?;
-        let program = std::env::current_exe()
-            .map_err(|error| Unusable::report(format!("this program does not find itself: {error}"), ""))?;
+        let program = own_path().map_err(|error| {
+            Unusable::report(
+                format!("this program does not find itself: {error}"),
+                "call it by its whole path",
+            )
+        })?;
         if !self.json {
             let text = FILES.iter().find(|(name, _)| *name == "spring.proof").map_or("", |(_, text)| *text);
             print_text(&format!("{}:\n\n{}", shown_path(&folder.join("spring.proof")), text.trim_end()))?;
@@ -101,7 +105,8 @@ impl Demo {
     /// Runs one command; with `--json` what it prints is left out.
     fn answer(&self, program: &Path, arguments: &[PathBuf]) -> miette::Result<Option<i32>> {
         let mut command = Command::new(program);
-        command.args(arguments).stdin(Stdio::null());
+        // a pipe that is closed at once: an empty root has no null device
+        command.args(arguments).stdin(Stdio::piped());
         if self.json {
             command.stdout(Stdio::null()).stderr(Stdio::null());
         }
@@ -110,4 +115,13 @@ impl Demo {
             .map_err(|error| Unusable::report(format!("cannot run {}: {error}", shown_path(program)), ""))?;
         Ok(status.code())
     }
+}
+
+/// Where this program is: in a root without `/proc`, where it was called by its path.
+fn own_path() -> std::io::Result<PathBuf> {
+    let called = || {
+        let path = PathBuf::from(std::env::args_os().next()?);
+        (path.components().count() > 1 && path.is_file()).then_some(path)
+    };
+    std::env::current_exe().or_else(|error| called().ok_or(error))
 }
