@@ -58,8 +58,10 @@ impl Experiment {
             Err(found) => apart = found,
         }
         let (shape, coverage) = from_track(&track, !answer.track.updates.is_empty());
-        let shape = shape
-            .filter(|_| track::no_outline(answer, &track.forms, self.scene.observer.when_blind).is_none());
+        // of two candidates that contradict each other neither is an answer, whatever windows say of themselves
+        let is_told = contradiction.is_none()
+            && track::no_outline(answer, &track.forms, self.scene.observer.when_blind).is_none();
+        let shape = shape.filter(|_| is_told);
         Some(Reconstruction { track, shape, coverage, whole: None, contradiction, apart })
     }
 
