@@ -21,7 +21,7 @@
 
 # %%
 import palmistry
-from workbench import SYSTEMS
+from workbench import SYSTEMS, drive
 
 axes = palmistry.observe(SYSTEMS / "beacons.toml").plot()
 
@@ -39,22 +39,7 @@ NOISE = 0.02  # m
 
 times = np.linspace(0, 5, 101)
 speed, turning = 1 + 0.3 * np.sin(times), 0.6 * np.cos(0.8 * times)
-
-
-def drive(start):
-    """The path: the heading in closed form, the place by Simpson's rule with fine steps."""
-    heading = lambda t: start[2] + 0.75 * np.sin(0.8 * t)
-    place, path = np.array(start[:2], float), [start[:2]]
-    for begin, end in zip(times[:-1], times[1:]):
-        fine = np.linspace(begin, end, 21)
-        rate = (1 + 0.3 * np.sin(fine)) * np.array([np.cos(heading(fine)), np.sin(heading(fine))])
-        weights = np.array([1] + [4, 2] * 9 + [4, 1]) * (fine[1] - fine[0]) / 3
-        place = place + rate @ weights
-        path.append(place)
-    return np.column_stack([np.array(path), heading(times)])
-
-
-truth = drive((1.5, -1.0, 2.2))
+truth = drive(times, lambda t: 1 + 0.3 * np.sin(t), lambda t: 2.2 + 0.75 * np.sin(0.8 * t), (1.5, -1.0))
 ranges = np.hypot(*(truth[:, None, :2] - BEACONS).transpose(2, 0, 1))
 readings = ranges + np.random.Generator(np.random.PCG64(20)).normal(0, NOISE, ranges.shape)
 

@@ -20,29 +20,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 import palmistry
 import pandas as pd
-import workbench  # noqa: F401, pictures that are the same each time
+from workbench import drive
 
 BEACONS = np.array([[-4.0, -3.0], [5.0, 4.0]])
 NOISE, BIAS = 0.03, 0.05  # m, rad/s
 
 times = np.linspace(0, 12, 181)
 speed, turning = 1 + 0.3 * np.sin(times), 0.5 * np.cos(0.5 * times)
-
-
-def drive(start):
-    """The path: the heading in closed form, the place by Simpson's rule with fine steps. Nothing of it is known to Palmistry."""
-    heading = lambda t: start[2] + np.sin(0.5 * t)
-    place, path = np.array(start[:2], float), [start[:2]]
-    for begin, end in zip(times[:-1], times[1:]):
-        fine = np.linspace(begin, end, 21)
-        rate = (1 + 0.3 * np.sin(fine)) * np.array([np.cos(heading(fine)), np.sin(heading(fine))])
-        weights = np.array([1] + [4, 2] * 9 + [4, 1]) * (fine[1] - fine[0]) / 3
-        place = place + rate @ weights
-        path.append(place)
-    return np.column_stack([np.array(path), heading(times)])
-
-
-truth = drive((-1.0, -2.0, 0.4))
+truth = drive(times, lambda t: 1 + 0.3 * np.sin(t), lambda t: 0.4 + np.sin(0.5 * t), (-1.0, -2.0))
 ranges = np.hypot(*(truth[:, None, :2] - BEACONS).transpose(2, 0, 1))
 log = pd.DataFrame({"near": ranges[:, 0], "far": ranges[:, 1], "v": speed, "gyro": turning + BIAS}, index=pd.Index(times, name="time"))
 log[["near", "far"]] += np.random.Generator(np.random.PCG64(4)).normal(0, NOISE, (times.size, 2))

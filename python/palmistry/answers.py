@@ -127,12 +127,7 @@ class Claims(Answer, Sequence):
     @cached_property
     def evidence(self) -> str:
         """What the verdicts rest on, as a verdict file (JSON): what `palmistry prove --verdicts` writes, for `palmistry recheck`; where `prove(evidence=True)` has kept it."""
-        text = self._found.verdicts()
-        if len(self) and not json.loads(text)["verdicts"]:
-            from .errors import Error
-
-            raise Error("what the verdicts rest on was not kept", "ask prove(evidence=True)")
-        return text
+        return self._found.verdicts()
 
     def recheck(self, *, proofs: str = ".", seed: int = 1) -> Recheck:
         """The verdicts, evaluated again by the small checker that shares nothing with the engines. It reads the proof file itself: the system has to come from one.
@@ -552,30 +547,36 @@ class Observation(Answer):
     @property
     def updates(self) -> list[dict[str, Any]]:
         """The windows of the method that is shown, each with its estimate, its standard deviations, how it ended and its test of fit."""
-        shown = next((observer for observer in self.observers if observer.get("updates")), None)
-        return shown["updates"] if shown else []
+        name = self._found.shown()
+        return next((observer["updates"] for observer in self.observers if observer["method"] == name), [])
 
     @property
     def estimates(self) -> Table:
-        """What was sought, at the beginning of the first window: name, estimate, deviation (a standard deviation; infinite where it is unobservable)."""
+        """What is estimated, at the beginning of the first window of the method that is shown: name, estimate, deviation.
+
+        deviation: a standard deviation; infinite where it is unobservable or what is estimated was held; NaN where the search came to no end, and the estimate is where it stopped.
+        """
         import numpy
 
         states = self.updates[0]["states"] if self.updates else {}
         names = [name for name in self._found.sought() if name in states]
         # what was held is not off by what measurements could tell at best
         is_held = bool(self.updates) and self.updates[0].get("held", False)
-        bounds = [numpy.inf if is_held or states[name]["bound"] is None else states[name]["bound"] for name in names]
-        values = [states[name]["recovered"] for name in names]
+        ends = bool(self.updates) and self.updates[0]["standing"].startswith("converged")
+        bounds = [numpy.inf if is_held or states[name]["bound"] is None else states[name]["bound"] if ends else numpy.nan for name in names]
+        values = [numpy.nan if states[name]["recovered"] is None else states[name]["recovered"] for name in names]
         return Table({"name": numpy.array(names), "estimate": numpy.array(values, dtype=float), "deviation": numpy.array(bounds, dtype=float)})
 
     def covariance(self, window: int = 0) -> numpy.ndarray | None:
-        """The covariance of what is sought at the beginning of a window, of shape (sought, sought), in the order of `estimates`; None where there is no such window, or where something is
-        unobservable in it."""
+        """The covariance of the estimates at the beginning of a window, of shape (estimates, estimates), in their order; None where there is no such window, where its search came to no end,
+        or where something is unobservable in it."""
+        if not 0 <= window < len(self.updates) or not self.updates[window]["standing"].startswith("converged"):
+            return None
         return self._found.covariance(window)
 
     @property
     def fits(self) -> bool:
-        """Whether each window converged and its residuals are what the noise explains."""
+        """Whether each window of the method that is shown converged and its residuals are what the noise explains; False of methods without windows, whose test is in `text`."""
         def passes(update: dict[str, Any]) -> bool:
             return update["standing"] == "converged" and bool(update["fit"]) and update["fit"]["fits"]
 

@@ -121,6 +121,11 @@ def sweep(system, samples, *, client, shards=None, folder=None, seed=1, at=None,
     file = os.path.abspath(system if isinstance(system, (str, os.PathLike)) else system.name)
     if not os.path.isfile(file):
         raise Failed(f"{file} is no file that the workers could read: write the source of the system into one, and read that")
+    if not isinstance(system, (str, os.PathLike)):
+        from .system import System
+
+        if System.read(file).source != system.source:
+            raise Failed(f"{file} has changed since it was read: read it again")
     command = ["rank", file, "--samples", str(int(samples)), "--seed", str(seed)]
     command += [f"--at={pair}" for pair in _pairs(at)] + [f"--where={condition}" for condition in _several(where)]
     command += [] if order is None else ["--order", str(order)]

@@ -35,12 +35,12 @@ def observe(
 ) -> Observation:
     """Runs observers: of a scene, a TOML file of any kind, or of a system on measurements.
 
-    Of a scene: data: measurements as CSV or Parquet in place of the scene's. seed: another one than the scene's. studies: run these too. times: whether `seconds` are told.
+    Of a scene: data: measurements as CSV or Parquet in place of the scene's. seed: another one than the scene's. studies: run these too. times: whether `seconds` are given.
 
     Of a system: data: a pandas.DataFrame, a dict of columns, or the path of a CSV or Parquet file, with the time in s, what each output measures, and what drives the inputs. Columns have
     the names of the model's outputs and inputs, or `columns` says what they are called: {"phi": "angle_deg"}. time: the column of times (of a DataFrame without one its index). inputs: by input field the column that drives it.
-    noise: the standard deviation of the outputs' errors, in their units, one for all or by output; estimated from the residuals unless given. unknowns: what is sought, all unknowns of the system
-    unless given. known: values of what is neither sought nor measured. guess: where the search begins; of what is not named in the middle of its range in the sample box. bounds: between what some of it lies.
+    noise: the standard deviation of the outputs' errors, in their units, one for all or by output; estimated from the residuals unless given. unknowns: what is estimated, all unknowns of the system
+    unless given. known: values of what is neither estimated nor measured. guess: where the search begins; of what is not named in the middle of its range in the sample box. bounds: between what some of it lies.
     method: 'multiple-shooting' (unless a guess is given), 'trust-region', 'newton', 'kalman', 'unscented', 'high-gain' or 'integration', or several. window: samples of one window, all unless given.
     steps: of the search in each window. loss: 'huber' or another of the book's; squares unless given. on_fault: 'stop' or 'skip' rows that are faulty.
 
@@ -69,11 +69,12 @@ def observe(
     length = len(held[0][1]) if held else None
     methods = _several(method) if method is not None else ["trust-region" if guess is not None else "multiple-shooting"]
     if window is None:
-        window = length - 1 if length is not None else _rows(path) - 1
+        # what a scene may say; too few samples are refused where they are counted
+        window = min(max((length if length is not None else _rows(path)) - 1, 2), 1_000_000)
     settings: dict[str, Any] = {
         "methods": methods,
         "estimate": list(_several(unknowns) if unknowns is not None else scene.unknowns),
-        "window": max(int(window), 1),
+        "window": int(window),
         "steps": int(steps),
     }
     if guess is None:
@@ -107,7 +108,7 @@ def observe(
 def stream(scene: str | os.PathLike[str], pieces: Iterable[Any], *, times: bool = True) -> Iterator[dict[str, Any]]:
     """Observers on measurements as they arrive: each window's answer as soon as it is there, and at the end an account of all; objects as `palmistry observe SCENE --data - --json` prints.
 
-    pieces: texts or bytes of comma-separated values, the first line with the names of columns; or rows as dicts, of which the first says the names. times: whether `seconds` are told.
+    pieces: texts or bytes of comma-separated values, the first line with the names of columns; or rows as dicts, of which the first says the names. times: whether `seconds` are given.
     Memory is bounded by a window. A break ends the work.
 
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -128,8 +129,15 @@ def stream(scene: str | os.PathLike[str], pieces: Iterable[Any], *, times: bool 
                 if names is None:
                     names = [str(name) for name in piece]
                     head = ",".join('"' + name.replace('"', '""') + '"' for name in names) + "\n"
+                missing = [name for name in names if name not in piece]
+                if missing:
+                    raise Error(f"a row has no '{missing[0]}'", f"each has what the first one has: {', '.join(names)}")
                 piece = head + ",".join(repr(float(piece[name])) for name in names) + "\n"
-            native.put(piece.encode() if isinstance(piece, str) else bytes(piece))
+            if isinstance(piece, str):
+                piece = piece.encode()
+            if not isinstance(piece, (bytes, bytearray, memoryview)):
+                raise Error(f"a piece of a stream is no {type(piece).__name__}", "it is a text, bytes, or a row as a dict")
+            native.put(bytes(piece))
             while (line := native.ready()) is not None:
                 yield json.loads(line)
         native.close()
@@ -177,7 +185,7 @@ def _measurements(data: Any, time: str) -> tuple[str | None, list[tuple[str, Any
     found = []
     for name, values in held.items():
         array = numpy.asarray(values)
-        if array.dtype.kind == "M":  # dates: from the first one, in s
+        if array.dtype.kind == "M" and array.size:  # dates: from the first one, in s
             array = (array - array[0]) / numpy.timedelta64(1, "s")
         elif array.dtype.kind == "m":
             array = array / numpy.timedelta64(1, "s")

@@ -209,7 +209,7 @@ class System:
         only: ids, parts of ids before a dot, or patterns with '*'. seed: of the random points. evidence: keep what the verdicts rest on, for `Claims.evidence` and `Claims.recheck`.
 
         >>> [(claim.id, claim.verdict) for claim in rod.prove()]
-        [('motion', 'proved'), ('sign', 'refuted')]
+        [('motion', 'proved'), ('seen', 'proved'), ('sign', 'refuted')]
         """
         return _asked(Claims, lambda: self._native.prove(_several(only), seed, evidence))
 
@@ -272,7 +272,7 @@ class System:
     def _of_kind(self, kind: str, globally: bool) -> Table:
         import numpy
 
-        found = self.rank(samples=0).unknowns
+        found = self._generically().unknowns
         chosen = found["kind"] == kind
         columns = {name: found[name][chosen] for name in ("name", "verdict")}
         if globally:
@@ -284,14 +284,15 @@ class System:
         return Table(columns)
 
     def identifiable_functions(self) -> list[str] | None:
-        """Functions of the unobservable unknowns that are locally identifiable, in the language; None where not all were found.
+        """Functions of the unobservable unknowns that are locally identifiable, in the language; None where not all were found. Parameters that `rank` holds at the file's values have these values
+        here; with what error probability each is proved is in `rank(samples=0).json`.
 
         >>> import palmistry
         >>> system = palmistry.System.parse('system "s" state x param a unknown, b unknown drift f x\\' = -a*b*x output x')
         >>> system.identifiable_functions(), system.unobservable_directions()
         (['a*b'], [{'a': 'a', 'b': '-b'}])
         """
-        return self.rank(samples=0).identifiable_functions
+        return self._generically().identifiable_functions
 
     def unobservable_directions(self) -> list[dict[str, str]] | None:
         """Vector fields along which no output changes: of each its components by unknown, in the language; None where not all were found.
@@ -299,7 +300,14 @@ class System:
         >>> palmistry.System.parse('system "s" state a, b drift f a\\' = -a b\\' = a output a').unobservable_directions()
         [{'b': '1'}]
         """
-        return self.rank(samples=0).unobservable_directions
+        return self._generically().unobservable_directions
+
+    def _generically(self) -> Rank:
+        """What holds generically, where that is one answer."""
+        found = self.rank(samples=0)
+        if len(found.branches) > 1:
+            raise Error(f"what the file says of the beginning has {len(found.branches)} branches, and each has an answer of its own", "ask rank(samples=0).branches")
+        return found
 
     def singular_set(self, seed: int = 1) -> SingularSet:
         """The sets on which the rank drops, each by its equations, with a proof that off them it does not: `palmistry rank --where-it-drops`.

@@ -32,7 +32,7 @@ def exactly(value: Any) -> Fraction:
         raise Error(f"{value} is not a number")
     try:
         if isinstance(value, float):
-            return Fraction(repr(value))
+            return Fraction(repr(float(value)))
         if isinstance(value, (int, Fraction, Decimal, str)):
             return Fraction(value)
         if getattr(value, "is_Float", False):

@@ -119,6 +119,13 @@ class Traced:
 
     __le__ = __gt__ = __ge__ = __lt__
 
+    def __eq__(self, other: Any) -> Any:
+        # an equality that were silently false would take a branch in silence
+        return bool(self)
+
+    __ne__ = __eq__
+    __hash__ = None  # type: ignore[assignment]
+
     def __repr__(self) -> str:
         return self.term.text
 
@@ -215,25 +222,29 @@ def from_function(
     <BLANKLINE>
     """
     states, inputs, unknown, angles = map(_names, (states, inputs, unknown, angles))
+    if not states:
+        raise Error("there are no states", "name them, as in states='phi, omega'")
     values = dict(parameters) if isinstance(parameters, Mapping) else dict.fromkeys(_names(parameters))
     for name in unknown:
         values.setdefault(name, None)
     given = [Symbols(states), Symbols(values), Symbols(inputs)]
     found = _called(rates, given)
     seen = _called(outputs, given)
+    # the drift is called as no symbol is
+    drift = next(name for name in ("f", *(f"f{number}" for number in range(1, len(states) + len(values) + len(inputs) + 2))) if name not in {*states, *values, *inputs})
     parts = Parts(
         states,
-        {"f": found if isinstance(found, Mapping) else _entries(found)},
+        {drift: found if isinstance(found, Mapping) else _entries(found)},
         seen if isinstance(seen, Mapping) else _entries(seen),
-        "f",
+        drift,
         str,
         lambda listed: list(listed),
     )
-    traced = [Traced.of(value) for value in [*parts.fields["f"], *parts.outputs]]
+    traced = [Traced.of(value) for value in [*parts.fields[drift], *parts.outputs]]
     beside = sorted(frozenset().union(*(one.names for one in traced)) - {*states, *values, *inputs})
     if beside:
         raise Error(f"'{beside[0]}' is neither a state nor a parameter nor an input", f"name it among them: states are {', '.join(states)}")
-    options = Options(title, "f", values, unknown, inputs, angles, sample, claims)
+    options = Options(title, drift, values, unknown, inputs, angles, sample, claims)
 
     def reader(ours: Callable[[str], str]) -> Callable[[Any], Term]:
         changed = [name for name in [*states, *values, *inputs] if ours(name) != name]

@@ -33,6 +33,8 @@ pub struct ClaimsFound {
     pub asked: usize,
     pub seed: u64,
     pub seconds: f64,
+    /// Whether what the verdicts rest on was kept.
+    pub has_evidence: bool,
 }
 
 impl ClaimsFound {
@@ -59,6 +61,10 @@ impl ClaimsFound {
 
     /// What the verdicts rest on, as a verdict file.
     fn verdicts(&self, py: Python<'_>) -> PyResult<String> {
+        if !self.has_evidence {
+            let message = "what the verdicts rest on was not kept";
+            return Err(crate::errors::unusable(py, message, Some("ask prove(evidence=True)")));
+        }
         let records = self.outcomes.iter().flat_map(|outcome| outcome.evidence.iter().cloned());
         verdict_file(py, self.seed, records.collect())
     }

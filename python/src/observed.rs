@@ -133,6 +133,14 @@ impl ObservationFound {
         columns(py, &record).map(Some)
     }
 
+    /// The method whose answer is shown; none where there is no such thing.
+    fn shown(&self) -> Option<&'static str> {
+        match &self.seen {
+            Seen::Moving { answers, .. } => shown(answers).map(|answer| answer.method.name()),
+            _ => None,
+        }
+    }
+
     /// The names of what is sought.
     fn sought(&self) -> Vec<String> {
         match &self.seen {

@@ -137,7 +137,9 @@ impl System {
             let kept = if evidence { Kept::Evidence } else { Kept::Verdicts };
             decide_all_keeping(kept, &system, seed, interrupt, &done)
         });
-        let made = |outcomes| ClaimsFound { outcomes, asked, seed, seconds: begin.elapsed().as_secs_f64() };
+        let seconds = move || begin.elapsed().as_secs_f64();
+        let made =
+            |outcomes| ClaimsFound { outcomes, asked, seed, seconds: seconds(), has_evidence: evidence };
         found.map(made).map_err(|cut| {
             let before = || {
                 let mut decided = decided.lock().unwrap_or_else(PoisonError::into_inner).clone();

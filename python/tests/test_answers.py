@@ -16,26 +16,10 @@ from fractions import Fraction
 from html.parser import HTMLParser
 
 import numpy
-from common import PROGRAM, ROOT, built
+from common import PENDULUM, PROGRAM, ROOT, built
 
 import palmistry
 from palmistry.errors import Error, EvaluationError, ReadError
-
-PENDULUM = """system "A pendulum whose angle is seen"
-state phi, omega
-param k = 2
-angle phi
-drift f
-  phi'   = omega
-  omega' = -k*sin(phi)
-output phi
-sample
-  phi   in [-3, 3]
-  omega in [-2, 2]
-claim motion: L(f, f, phi) = -k*sin(phi)
-claim seen: rank = 2
-claim sign: L(f, omega) = k*sin(phi)
-"""
 
 BEACONS = """system "Where a point on the plane is, by two squared distances"
 state x, y

@@ -17,7 +17,7 @@ import textwrap
 import unittest
 
 import numpy
-from common import ROOT
+from common import PENDULUM, ROOT
 
 import palmistry
 
@@ -34,22 +34,6 @@ rod = palmistry.System.parse('''
 SYSTEM''')
 ```
 
-"""
-
-#: The system of the examples.
-ROD = """system "A pendulum"
-state phi, omega
-param k = 2
-angle phi
-drift f
-  phi'   = omega
-  omega' = -k*sin(phi)
-output phi
-sample
-  phi   in [-3, 3]
-  omega in [-2, 2]
-claim motion: L(f, f, phi) = -k*sin(phi)
-claim sign:   L(f, omega) = k*sin(phi)
 """
 
 #: In the order in which a reader needs them.
@@ -85,7 +69,7 @@ def members(kind):
 
 
 def page():
-    lines = [HEAD.replace("SYSTEM", ROD).rstrip()]
+    lines = [HEAD.replace("SYSTEM", PENDULUM).rstrip()]
     for name in ORDER:
         value = getattr(palmistry, name)
         lines += ["", f"## {name}", ""]
@@ -126,7 +110,7 @@ class Api(unittest.TestCase):
         self.assertEqual(silent, [])
 
     def test_examples_in_docstrings(self):
-        names = {"pathlib": pathlib, "tempfile": tempfile, "numpy": numpy, "palmistry": palmistry, "rod": palmistry.System.parse(ROD)}
+        names = {"pathlib": pathlib, "tempfile": tempfile, "numpy": numpy, "palmistry": palmistry, "rod": palmistry.System.parse(PENDULUM)}
         for module in ("answers", "cluster", "observing", "program", "system", "tables", "traced", "translation"):
             found = doctest.testmod(importlib.import_module(f"palmistry.{module}"), extraglobs=names, optionflags=doctest.ELLIPSIS)
             with self.subTest(module):

@@ -174,6 +174,9 @@ class TheProgram(unittest.TestCase):
             arriving.close()
             with self.assertRaises(ReadError):
                 list(palmistry.stream(short, ["time,u\n", "0,1\n"]))
+            for pieces, said in (([5], "no int"), ([rows[0], {"time": 1}], "a row has no")):
+                with self.assertRaisesRegex(Error, said):
+                    list(palmistry.stream(short, pieces))
 
     def slowly(self, lines):
         for self.given, line in enumerate(lines, 1):
@@ -213,6 +216,9 @@ class Functions(unittest.TestCase):
         cases = [
             (lambda x: [math.sin(x.q), x.q], "numpy's or SymPy's"),
             (lambda x: [x.v if x.q > 0 else x.q, x.v], "no branches"),
+            (lambda x: [x.v if x.q == 0 else x.q, x.v], "no branches"),
+            (lambda x: [x.v if x.q != 0 else x.q, x.v], "no branches"),
+            (lambda x: [x.v if x.q in (1, 2) else x.q, x.v], "no branches"),
             (lambda x: [x.v], "1 rates"),
             (lambda x: [x.v, x.nothing], "there is no 'nothing'"),
             (lambda x: {"q": x.v, "r": x.q}, "moves r"),
@@ -221,6 +227,12 @@ class Functions(unittest.TestCase):
         for f, said in cases:
             with self.assertRaisesRegex((Error, AttributeError), said):
                 palmistry.System.from_function(f, lambda x: x.q, states="q, v")
+
+    def test_numbers_of_numpy_and_a_state_that_is_called_f(self):
+        found = palmistry.System.from_function(lambda x, p: [numpy.float64(2.5) * x.f - p.k * x.f**2 * numpy.int64(3)], lambda x: x.f, states="f", parameters={"k": numpy.float64(0.5)})
+        self.assertEqual(found.eval("L(f1, f)", at={"f": 2}).exact, 5 - 6)
+        with self.assertRaisesRegex(Error, "no states"):
+            palmistry.System.from_function(lambda x: [], lambda x: [1], states="")
 
     def test_sums_and_products_keep_their_brackets(self):
         """Random expressions, evaluated by Python and by the program."""
@@ -286,6 +298,24 @@ class Measurements(unittest.TestCase):
         bounded = palmistry.observe(self.system, data, noise=1e-3, bounds={"k": (2.5, 4)})
         self.assertFalse(bounded.fits)
 
+    def test_what_has_no_answer_has_no_deviation(self):
+        """A search that stops early, one that cannot see, and two methods of which one is shown."""
+        data = {"time": self.times, "phi": self.phi}
+        stopped = palmistry.observe(self.system, data, noise=1e-3, guess={"phi": 2.5, "omega": -1.5, "k": 4, "c": 0.9}, method="newton", steps=1)
+        if not stopped.updates[0]["standing"].startswith("converged"):
+            self.assertTrue(numpy.isnan(stopped.estimates["deviation"]).all())
+            self.assertIsNone(stopped.covariance())
+        self.assertFalse(stopped.fits)
+        both = palmistry.System.parse(self.system.source.replace("-k*sin(phi)", "-k*m*sin(phi)").replace("param c", "param m unknown\nparam c").replace("sample", "sample\n  m in [1, 2]"))
+        blind = palmistry.observe(both, data, noise=1e-3)
+        self.assertEqual(blind.updates[0]["standing"], "cannot see")
+        self.assertTrue(numpy.isinf(blind.estimates["deviation"]).all())
+        self.assertIsNone(blind.covariance())
+        two = palmistry.observe(self.system, data, noise=1e-3, method=["kalman", "trust-region"])
+        numpy.testing.assert_allclose(numpy.sqrt(numpy.diag(two.covariance())), two.estimates["deviation"], rtol=1e-9)
+        alone = palmistry.observe(self.system, data, noise=1e-3, method="kalman")
+        self.assertEqual((alone.updates, alone.estimates.rows, alone.covariance(), alone.fits), ([], 0, None, False))
+
     def test_any_title(self):
         title = 'A "decay" \\ \u00e9 \U0001f600 \x7f'
         system = palmistry.System.from_function(lambda x: [-x[0]], lambda x: x[0], states="x", title=title.replace('"', ""), sample={"x": (0, 2)})
@@ -303,6 +333,8 @@ class Measurements(unittest.TestCase):
             (lambda: palmistry.observe(self.system, good, method="magic"), "magic"),
             (lambda: palmistry.observe(self.system, good, unknowns=["psi"]), "psi"),
             (lambda: palmistry.observe(self.system, 3.0), "no float"),
+            (lambda: palmistry.observe(self.system, {"time": [], "phi": []}), "no row|no sample|empty"),
+            (lambda: palmistry.observe(self.system, {"time": numpy.array([], "datetime64[s]"), "phi": []}), "does not hold numbers|no row"),
             (lambda: palmistry.observe(self.system, good, studies=True), "true states"),
         ]
         for ask, said in cases:
@@ -390,6 +422,10 @@ class Sweeps(unittest.TestCase):
             self.assertEqual(timeless(found.json), timeless(alone.json))
             self.assertEqual(found.histogram, alone.histogram)
             self.assertIn("rank", found.text)
+            with open(file, "a", encoding="utf-8") as copy:
+                copy.write("# changed\n")
+            with self.assertRaisesRegex(palmistry.cluster.Failed, "has changed"):
+                palmistry.sweep(system, samples=10, client=None)
 
 
 if __name__ == "__main__":
