@@ -517,11 +517,14 @@ class Observation(Answer):
         return None if columns is None else Table(columns)
 
     @property
-    def readings(self) -> Table:
+    def measurements(self) -> Table:
         """The measurements, a row a sample: time (s), outputs, inputs."""
         found = self._table("readings")
         assert found is not None
         return found
+
+    #: What `measurements` was called before, and still answers to.
+    readings = measurements
 
     @property
     def motion(self) -> Table | None:

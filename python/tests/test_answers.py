@@ -113,8 +113,8 @@ class TheProgram(unittest.TestCase):
                 program("observe", file, "--record", table)
                 columns = numpy.genfromtxt(table, delimiter=",", names=True)
                 with open(table, encoding="utf-8") as text:
-                    self.assertEqual(list(found.readings), text.readline().strip().split(","))
-                for here, there in zip(found.readings.values(), columns.dtype.names):
+                    self.assertEqual(list(found.measurements), text.readline().strip().split(","))
+                for here, there in zip(found.measurements.values(), columns.dtype.names):
                     self.assertTrue(numpy.array_equal(here, columns[there], equal_nan=True), there)
 
     def test_a_table_is_that_of_the_program(self):

@@ -54,7 +54,7 @@ COMMANDS = {
     "stress": (["run"], {}),
     "eval": (["System.eval"], {"--at": "at", "--digits": "digits", "--verdict": "verdict", "--latex": "Value.latex"}),
     "observe": (["observe", "stream", "cluster.sweep_command"], {
-        "--data": "data", "--studies": "studies", "--out": "Observation.page", "--record": "Observation.readings", "--motion": "Observation.motion", "--track": "Observation.track",
+        "--data": "data", "--studies": "studies", "--out": "Observation.page", "--record": "Observation.measurements", "--motion": "Observation.motion", "--track": "Observation.track",
         "--outline": "Observation.outline", "--shard": "shards", "--part": "folder", "--merge": "cluster.sweep_command", "--missing": "cluster.missing",
     }),
     "advise": (["run"], {}),

@@ -80,7 +80,7 @@ class TheProgram(unittest.TestCase):
             file = os.path.join(scenes, name)
             found = palmistry.observe(file, times=False)
             self.assertEqual(timeless(found.json), timeless(program("observe", file, "--no-times")), name)
-            self.assertGreater(found.readings.rows, 1)
+            self.assertGreater(found.measurements.rows, 1)
             if name == "touchpad_switch.toml":
                 with self.assertRaisesRegex(Error, "no page"):
                     found.page
