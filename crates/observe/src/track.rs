@@ -99,6 +99,11 @@ impl Update {
         matches!(self.end, UpdateEnd::Blind { .. })
     }
 
+    /// Whether its search came to no end: its deviations are those of an estimate that is not reached.
+    pub fn is_unfinished(&self) -> bool {
+        matches!(self.end, UpdateEnd::StepsSpent | UpdateEnd::Lost(_))
+    }
+
     /// Whether the readings bear it out, and against a noise that was stated.
     pub(super) fn has_tested(&self) -> bool {
         self.is_borne_out() && self.fit.is_some_and(|fit| fit.from == NoiseFrom::Stated)

@@ -50,7 +50,7 @@ pub use recognised::{LibraryAnswer, Recognition, RecognitionVerdict};
 #[doc(hidden)]
 pub use reconstruction::{on_palm, shown, turned};
 pub use recovered::{
-    Apart, Contradiction, Reconstruction, TouchInstant, TouchTrack, WholeMotion, WholeSample,
+    Apart, Contradiction, Reconstruction, TooWide, TouchInstant, TouchTrack, WholeMotion, WholeSample,
 };
 #[doc(hidden)]
 pub use run::error;

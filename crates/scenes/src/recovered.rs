@@ -15,10 +15,21 @@ pub struct Reconstruction {
     pub coverage: Coverage,
     /// Shape and motion batch estimate of all measurements, where that is where the shape comes from.
     pub whole: Option<WholeMotion>,
-    /// Where a motion that explains all readings at once is no answer, because windows that fit say otherwise.
+    /// Where neither a motion that explains all readings at once nor windows that fit are an answer, because they contradict each other: then there is no shape.
     pub contradiction: Option<Contradiction>,
+    /// Where the shape that was found is none, because its band is wider than the body.
+    pub too_wide: Option<TooWide>,
     /// Where no motion was sought that explains all readings at once, because its samples are too far apart.
     pub apart: Option<Apart>,
+}
+
+/// A band that is wider than what it is about: the deviations are those of a linear model, which holds for small ones only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TooWide {
+    /// Half the width of the band where it is widest and was touched, two standard deviations, in m.
+    pub band: f64,
+    /// The mean radius that was found, in m.
+    pub mean: f64,
 }
 
 /// Samples between which more happens than is followed.

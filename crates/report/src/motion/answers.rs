@@ -285,11 +285,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
             };
             let (from, steps, fit) = (update.from, update.steps, fit_in_words(update));
             let _ = writeln!(text, "  from {from:.3} s: {standing} after {steps} steps{fit}{time}");
-            let known = Beside {
-                bounds: &update.deviations,
-                at_bounds: &update.at_bounds,
-                is_held: update.is_held(),
-            };
+            let known = Beside::of(update);
             state_lines(&mut text, observed, &names, update.from, &update.estimate, known);
             for line in suspects_in_words(update) {
                 let _ = writeln!(text, "    {line}");
@@ -297,7 +293,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         }
         if let Some(last) = answer.track.last() {
             let _ = writeln!(text, "  at the end, {:.3} s:", last.time);
-            let known = Beside { bounds: &last.deviations, at_bounds: &[], is_held: false };
+            let known = Beside { bounds: &last.deviations, at_bounds: &[], worth: "" };
             state_lines(&mut text, observed, &names, last.time, &last.state, known);
         }
         if answer.track.unseen > 0 {
@@ -310,9 +306,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
                 other.from,
                 fit_in_words(other)
             );
-            let known =
-                Beside { bounds: &other.deviations, at_bounds: &other.at_bounds, is_held: other.is_held() };
-            state_lines(&mut text, observed, &names, other.from, &other.estimate, known);
+            state_lines(&mut text, observed, &names, other.from, &other.estimate, Beside::of(other));
         }
         for line in verdict_lines(&answer.track) {
             let _ = writeln!(text, "  {line}");
@@ -358,15 +352,8 @@ pub(super) fn state_lines(
     for (i, name) in names.iter().enumerate() {
         let name = state_name(observed, name);
         let _ = write!(text, "    {name:<8} {:>15.9}", recovered[i]);
-        match known.bounds.get(i) {
-            // a belief that was kept is not off by what measurements could tell
-            Some(bound) if known.is_held => {
-                let _ = write!(text, "  not estimated, at best ± {bound:.1e}");
-            }
-            Some(bound) => {
-                let _ = write!(text, " ± {bound:.1e}");
-            }
-            None => {}
+        if let Some(bound) = known.bounds.get(i) {
+            let _ = write!(text, "{} ± {bound:.1e}", known.worth);
         }
         if let Some(truth) = &truth {
             let _ = write!(text, "  true {:>15.9}  error {:.1e}", truth[i], (recovered[i] - truth[i]).abs());
@@ -378,12 +365,27 @@ pub(super) fn state_lines(
     }
 }
 
-/// What is known beside recovered states: their standard deviations, which may be none, those that are held at a bound, and whether all are what was believed before.
+/// What is known beside recovered states: their standard deviations, which may be none, those that are held at a bound, and what is said before a deviation that is not an estimate's.
 #[derive(Clone, Copy)]
 pub(super) struct Beside<'a> {
     pub bounds: &'a [f64],
     pub at_bounds: &'a [(usize, f64)],
-    pub is_held: bool,
+    pub worth: &'static str,
+}
+
+impl<'a> Beside<'a> {
+    pub fn of(update: &'a Update) -> Beside<'a> {
+        Beside { bounds: &update.deviations, at_bounds: &update.at_bounds, worth: worth_in_words(update) }
+    }
+}
+
+/// What is said before the deviations of what is no estimate: it is not off by what measurements could tell.
+pub(super) fn worth_in_words(update: &Update) -> &'static str {
+    match () {
+        () if update.is_held() => "  not estimated, at best",
+        () if update.is_unfinished() => "  search not ended, at best",
+        () => "",
+    }
 }
 
 /// In what unit errors and bounds are printed.

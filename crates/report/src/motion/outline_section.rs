@@ -3,9 +3,9 @@
 use crate::motion::answers::Observed;
 use crate::motion::outline_plot::{band_picture, outline_picture};
 use crate::motion::reconstruction::{
-    EXPLAINED, apart_in_words, contradiction_in_words, convexity_in_words, from_in_words, gaps, length,
-    misfit_in_words, model_in_words, no_shape_in_words, reconstruction, sizes_in_words, truth,
-    widened_in_words, widest,
+    EXPLAINED, apart_in_words, convexity_in_words, from_in_words, gaps, length, misfit_in_words,
+    model_in_words, no_shape_in_words, reasons, reconstruction, sizes_in_words, truth, widened_in_words,
+    widest,
 };
 use crate::motion::shape::support_error;
 use maud::{Markup, PreEscaped, html};
@@ -14,10 +14,8 @@ use maud::{Markup, PreEscaped, html};
 pub(super) fn shape_section(observed: &Observed<'_>) -> Markup {
     let Some(found) = reconstruction(observed.answers) else { return html! {} };
     let Some(shape) = &found.shape else {
-        let why = found.contradiction.iter().map(contradiction_in_words);
-        let why: Vec<String> = why.chain(found.apart.iter().map(apart_in_words)).collect();
         return html! {
-            p.remark { "Shape: " (no_shape_in_words(found)) @for why in &why { "; " (why) } "." }
+            p.remark { "Shape: " (no_shape_in_words(found)) @for why in reasons(found) { "; " (why) } "." }
         };
     };
     let truth = truth(observed.experiment);
@@ -38,7 +36,6 @@ pub(super) fn shape_section(observed: &Observed<'_>) -> Markup {
         p {
             @for (name, size) in sizes_in_words(found, shape, "m²", 6) { (name) " " (size) "; " }
             "the function is " (convexity_in_words(shape))
-            @if let Some(contradiction) = &found.contradiction { "; " (contradiction_in_words(contradiction)) }
             @if let Some(apart) = &found.apart { "; " (apart_in_words(apart)) }
             @match &found.whole {
                 Some(whole) => { "; " (misfit_in_words(whole, shape)) }

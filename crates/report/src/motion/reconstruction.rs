@@ -4,7 +4,9 @@ use crate::motion::fit::finite;
 use crate::motion::shape::support_error;
 use palmistry_bodies::mechanics::moving::Shape;
 use palmistry_bodies::shape::{Convexity, Measured, ShapeEstimate};
-use palmistry_scenes::{Answer, Apart, Contradiction, Experiment, Reconstruction, WholeMotion, error, shown};
+use palmistry_scenes::{
+    Answer, Apart, Contradiction, Experiment, Reconstruction, TooWide, WholeMotion, error, shown,
+};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -104,9 +106,7 @@ pub(super) fn shape_text(experiment: &Experiment, answers: &[Answer]) -> String 
     let Some(found) = reconstruction(answers) else { return text };
     let Some(shape) = &found.shape else {
         let _ = writeln!(text, "\nshape: {}", no_shape_in_words(found));
-        let why = found.contradiction.iter().map(contradiction_in_words);
-        let why = why.chain(found.apart.iter().map(apart_in_words));
-        text.extend(why.map(|why| format!("  {why}\n")));
+        text.extend(reasons(found).iter().map(|why| format!("  {why}\n")));
         return text;
     };
     let _ = writeln!(text, "\nshape, {}: {}", from_in_words(found), model_in_words(shape));
@@ -127,9 +127,6 @@ pub(super) fn shape_text(experiment: &Experiment, answers: &[Answer]) -> String 
         let _ = writeln!(text, "  {name} {size}");
     }
     let _ = writeln!(text, "  {}", convexity_in_words(shape));
-    if let Some(contradiction) = &found.contradiction {
-        let _ = writeln!(text, "  {}", contradiction_in_words(contradiction));
-    }
     text.extend(found.apart.iter().map(|apart| format!("  {}\n", apart_in_words(apart))));
     if let Some(whole) = &found.whole {
         let _ = writeln!(text, "  {}", misfit_in_words(whole, shape));
@@ -190,7 +187,7 @@ pub(super) fn model_in_words(shape: &ShapeEstimate) -> String {
     }
 }
 
-pub(super) fn contradiction_in_words(found: &Contradiction) -> String {
+fn contradiction_in_words(found: &Contradiction) -> String {
     let Contradiction { time, name, by_window, of_all } = found;
     format!(
         "the batch estimate of all measurements is no answer: it makes {name} {:.6} ± {:.1e} at {time:.3} s, and a window that fits {:.6} ± {:.1e}",
@@ -207,6 +204,21 @@ pub(super) fn apart_in_words(found: &Apart) -> String {
     format!(
         "the batch estimate of all measurements is no answer: samples are {between:.3} s apart, more happens between them than is followed, and gravity moves a body of this size in {scale:.3} s.{why}"
     )
+}
+
+fn too_wide_in_words(found: &TooWide) -> String {
+    format!(
+        "the outline that was found is no answer: its band (two standard deviations) is {} where touched, wider than its mean radius {}",
+        length(found.band),
+        length(found.mean)
+    )
+}
+
+/// Why there is no shape, or why none by all measurements at once.
+pub(super) fn reasons(found: &Reconstruction) -> Vec<String> {
+    let contradiction = found.contradiction.iter().map(contradiction_in_words);
+    let too_wide = found.too_wide.iter().map(too_wide_in_words);
+    contradiction.chain(too_wide).chain(found.apart.iter().map(apart_in_words)).collect()
 }
 
 /// Perimeter and area: of a body that was touched all round with their deviations, else what its contacts leave, whatever lies in the gaps. What is neither is not told.
@@ -265,6 +277,14 @@ pub(super) fn shape_json(experiment: &Experiment, answers: &[Answer]) -> Option<
     if let Some(Apart { between, scale }) = &found.apart {
         json["apart"] = json!({ "between": finite(*between), "scale": finite(*scale) });
     }
+    if let Some(Contradiction { time, name, by_window, of_all }) = &found.contradiction {
+        json["contradiction"] = json!({
+            "time": finite(*time), "state": name, "window": measured(*by_window), "all_readings": measured(*of_all),
+        });
+    }
+    if let Some(TooWide { band, mean }) = &found.too_wide {
+        json["too_wide"] = json!({ "band": finite(*band), "mean_radius": finite(*mean) });
+    }
     let Some(shape) = &found.shape else { return Some(json) };
     let covered = |angle: f64| found.coverage.contains(angle);
     json["mean_radius"] = finite(shape.support.mean());
@@ -289,11 +309,6 @@ pub(super) fn shape_json(experiment: &Experiment, answers: &[Answer]) -> Option<
         };
         json["perimeter"] = of(shape.perimeter(), extent.perimeter);
         json["area"] = of(shape.area(), extent.area);
-    }
-    if let Some(Contradiction { time, name, by_window, of_all }) = &found.contradiction {
-        json["contradiction"] = json!({
-            "time": finite(*time), "state": name, "window": measured(*by_window), "all_readings": measured(*of_all),
-        });
     }
     json["convexity"] = convexity_json(&shape.convexity());
     json["convexity_within_band"] = convexity_json(&shape.convexity_within_band());

@@ -96,19 +96,14 @@ pub fn stream_text(report: &WindowReport<'_>, is_timed: bool) -> String {
                 ),
             };
             let _ = writeln!(text, "  from {:.6} s: {standing}", update.from);
-            let known = Beside {
-                bounds: &update.deviations,
-                at_bounds: &update.at_bounds,
-                is_held: update.is_held(),
-            };
-            state_lines(&mut text, &observed, &names, update.from, &update.estimate, known);
+            state_lines(&mut text, &observed, &names, update.from, &update.estimate, Beside::of(update));
             for line in suspects_in_words(update) {
                 let _ = writeln!(text, "    {line}");
             }
         }
         if let Some(last) = &answer.end {
             let _ = writeln!(text, "  at {:.6} s:", last.time);
-            let known = Beside { bounds: &last.deviations, at_bounds: &[], is_held: false };
+            let known = Beside { bounds: &last.deviations, at_bounds: &[], worth: "" };
             state_lines(&mut text, &observed, &names, last.time, &last.state, known);
         }
         for remark in &answer.remarks {

@@ -1,6 +1,6 @@
 //! What each observer found, as tables: at the end, update by update, and what it could not see.
 
-use crate::motion::answers::{Observed, end_name, state_name};
+use crate::motion::answers::{Observed, end_name, state_name, worth_in_words};
 use crate::motion::fit::{p_in_words, suspects_in_words, unexplained};
 use crate::motion::verdicts::{innovations_in_words, verdict_lines};
 use maud::{Markup, html};
@@ -172,12 +172,12 @@ fn update_table(observed: &Observed<'_>, answer: &Answer) -> Markup {
                             None => { td { "-" } td { "-" } }
                         } }
                         td.n {
-                            @if update.is_held() { "not estimated, at best " }
+                            (worth_in_words(update).trim_start()) " "
                             (bound_in_words(deviation))
                             @if let Some((_, bound)) = update.at_bounds.iter().find(|own| own.0 == place) { ", held at " (bound) }
                         }
                         @if known { td.n { @match &truth {
-                            Some(truth) if deviation.is_finite() && deviation > 0.0 && !update.is_held() => {
+                            Some(truth) if deviation.is_finite() && deviation > 0.0 && worth_in_words(update).is_empty() => {
                                 (format!("{:.1}", (value - truth[place]).abs() / deviation))
                             }
                             _ => { "-" }

@@ -21,7 +21,7 @@ mod whole;
 #[doc(hidden)]
 pub use track::{on_palm, shown, turned};
 
-use super::recovered::{Apart, Reconstruction, TouchTrack, WholeMotion, WholeSample};
+use super::recovered::{Apart, Reconstruction, TooWide, TouchTrack, WholeMotion, WholeSample};
 use super::run::{Answer, Experiment};
 use super::scene::{Method, SceneError};
 use super::simulation::deviation;
@@ -51,8 +51,17 @@ impl Experiment {
                 contradiction = agreement::contradiction(&self.names(), answer, &whole);
                 if contradiction.is_none() {
                     let coverage = coverage(&record, &told.best);
-                    let (shape, whole) = (Some(told.best.shape), Some(whole));
-                    return Some(Reconstruction { track, shape, coverage, whole, contradiction, apart });
+                    let (shape, too_wide) = resolved(told.best.shape, &coverage);
+                    let whole = too_wide.is_none().then_some(whole);
+                    return Some(Reconstruction {
+                        track,
+                        shape,
+                        coverage,
+                        whole,
+                        contradiction,
+                        too_wide,
+                        apart,
+                    });
                 }
             }
             Err(found) => apart = found,
@@ -61,8 +70,9 @@ impl Experiment {
         // of two candidates that contradict each other neither is an answer, whatever windows say of themselves
         let is_told = contradiction.is_none()
             && track::no_outline(answer, &track.forms, self.scene.observer.when_blind).is_none();
-        let shape = shape.filter(|_| is_told);
-        Some(Reconstruction { track, shape, coverage, whole: None, contradiction, apart })
+        let (shape, too_wide) =
+            shape.filter(|_| is_told).map_or((None, None), |shape| resolved(shape, &coverage));
+        Some(Reconstruction { track, shape, coverage, whole: None, contradiction, too_wide, apart })
     }
 
     /// What every observer makes of the readings, as [`Experiment::run`], and the shape that they tell, which stands with the answer that
@@ -123,6 +133,21 @@ impl Experiment {
         let mean = told.best.shape.support.mean();
         let most = (BELIEVED * mean).max(BELIEVED_NOISE * stated);
         if told.best.misfit <= most && mean > 0.0 { Ok((record, told)) } else { Err(None) }
+    }
+}
+
+/// Normals at which a band is looked at.
+const NORMALS: u32 = 360;
+
+/// A shape, unless its band is somewhere wider than its mean radius where it was touched: no linear model reaches so far, and neither does its band.
+fn resolved(shape: ShapeEstimate, coverage: &Coverage) -> (Option<ShapeEstimate>, Option<TooWide>) {
+    let angles = (0..NORMALS).map(|i| std::f64::consts::TAU * f64::from(i) / f64::from(NORMALS));
+    let touched = angles.filter(|angle| coverage.contains(*angle));
+    let (band, mean) =
+        (touched.map(|angle| shape.band(coverage, angle)).fold(0.0, f64::max), shape.support.mean());
+    match band > mean {
+        true => (None, Some(TooWide { band, mean })),
+        false => (Some(shape), None),
     }
 }
 
