@@ -2,6 +2,7 @@ from . import answers as answers
 from . import cluster as cluster
 from . import errors as errors
 from . import recheck as recheck
+from . import studies as studies
 from . import system as system
 from . import tables as tables
 from .answers import Accessibility as Accessibility
@@ -9,12 +10,16 @@ from .answers import Certificate as Certificate
 from .answers import Claim as Claim
 from .answers import Claims as Claims
 from .answers import Map as Map
+from .answers import Motions as Motions
 from .answers import Observation as Observation
 from .answers import Page as Page
+from .answers import Poses as Poses
 from .answers import Rank as Rank
 from .answers import Recheck as Recheck
 from .answers import SingularSet as SingularSet
 from .answers import Solutions as Solutions
+from .answers import Stress as Stress
+from .answers import Trade as Trade
 from .answers import Value as Value
 from .answers import Verdicts as Verdicts
 from .cluster import sweep as sweep
@@ -25,6 +30,9 @@ from .observing import observe as observe
 from .observing import stream as stream
 from .program import Printed as Printed
 from .program import run as run
+from .studies import advise as advise
+from .studies import check as check
+from .studies import poses as poses
 from .system import System as System
 from .system import import_model as import_model
 from .system import latex as latex

@@ -499,6 +499,61 @@ class Certificate(Answer):
         return f"{picture}<pre>{escape(self.text)}</pre>"
 
 
+class Trade(Answer):
+    """What accuracy costs: number types, ways to a derivative and ways to a rank, on the same states."""
+
+    @property
+    def table(self) -> Table:
+        """A row a combination: number, derivative and rank by name, seconds_a_state, the median of the digits, wrong and undecided verdicts, and whether it is on the Pareto front."""
+        import numpy
+
+        rows = self.json["combinations"]
+        names = ("number", "derivative", "rank", "seconds_a_state", "wrong", "undecided", "seconds_on_front")
+        found = {name: numpy.array([row[name] for row in rows]) for name in names}
+        return Table({**found, "digits": numpy.array([row["digits"].get("median", numpy.nan) for row in rows], dtype=float)})
+
+    @property
+    def svg(self) -> str:
+        """The front as a picture."""
+        return self._found.page()
+
+    def _repr_html_(self) -> str:
+        return f"{self.svg}<pre>{escape(self.text)}</pre>"
+
+
+class Stress(Answer):
+    """How near to a singular set, how large, and in which units number types misreport a rank."""
+
+    def __init__(self, found: Any) -> None:
+        told, pictures = found
+        super().__init__(told)
+        self._pictures = pictures
+
+    @property
+    def pictures(self) -> dict[str, str]:
+        """Pictures (SVG) by name."""
+        return dict(self._pictures)
+
+    def _repr_html_(self) -> str:
+        return "".join(self.pictures.values()) + f"<pre>{escape(self.text)}</pre>"
+
+
+class Motions(Answer):
+    """Motions of palms, or runs of a body in space, that touch most of a body."""
+
+
+class Poses(Answer):
+    """Where a body lies between two slow palms, and how they can move it."""
+
+    @cached_property
+    def page(self) -> Page:
+        """The page with its pictures."""
+        return Page(self._found.page())
+
+    def _repr_html_(self) -> str:
+        return self.page._repr_html_()
+
+
 def _framed(page: str, height: int = 600) -> str:
     """A whole page inside another one."""
     return f'<iframe srcdoc="{escape(page)}" style="width:100%;height:{height}px;border:0"></iframe>'

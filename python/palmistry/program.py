@@ -56,7 +56,7 @@ def _words(options: dict[str, Any]) -> list[str]:
 def run(command: str, *arguments: Any, **options: Any) -> Printed:
     """Runs a command of the program, in a process of its own, and returns what it prints.
 
-    command: as 'trade', 'stress', 'advise', 'poses', 'check' or 'fmt'; each is also there for what has a function here. arguments, options: those of the command line, where `boxes=100` is
+    command: as 'new' or 'demo', or one that has a function here, for what options it alone has. arguments, options: those of the command line, where `boxes=100` is
     `--boxes 100`, `no_times=True` is `--no-times` and `from_="sbml"` is `--from sbml`; a list is given once for each entry. Raises Error with the program's own words where the input cannot
     be used. Ctrl-C ends the program as well.
 

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Union
 
-from .answers import Accessibility, Certificate, Claims, Map, Page, Rank, Recheck, SingularSet, Solutions, Value, Verdicts
+from .answers import Accessibility, Certificate, Claims, Map, Page, Rank, Recheck, SingularSet, Solutions, Stress, Trade, Value, Verdicts
 from .errors import Error
 from .tables import Table
 
@@ -357,6 +357,42 @@ class System:
             with open(path, "w", encoding="utf-8") as file:
                 file.write(text.replace(f'"{self.name}"', f'"{here}"', 1))
         return found
+
+    def trade(self, samples: int = 1000, *, seed: int = 1) -> Trade:
+        """Measures speed against accuracy: numbers, ways to a derivative and ways to a rank, each at the same sampled states and held against exact arithmetic there.
+
+        samples: how many states are drawn from the sample box, at most 20000. Times are of this machine.
+
+        >>> sorted({str(one) for one in rod.trade(4).table["number"]})[:2]
+        ['double-double', 'f32']
+        """
+        if not 1 <= samples <= 20_000:
+            raise Error(f"{samples} samples are not possible", "between 1 and 20000 are")
+        return _asked(Trade, lambda: _native.trade(self._native, samples, seed))
+
+    def stress(self, rows: str = "own", *, states: int = 10, samples: int = 200, seed: int = 1) -> Stress:
+        """Takes numbers to the extremes: how near to a singular set, how large, and in which units a rank is misreported, beside the certified one.
+
+        rows: 'own', the file's own matrix `rows` where it defines one, or 'full', the codistribution. states: on each set, from which lines go. samples: states of the sample box that are looked at
+        in other units.
+
+        >>> sorted(rod.stress(states=1, samples=2).pictures)
+        ['conditioning', 'scaling']
+        """
+        if rows not in ("own", "full"):
+            raise Error(f"'{rows}' are no rows", "it is 'own' or 'full'")
+        if not (1 <= states <= 1000 and 1 <= samples <= 100_000):
+            raise Error(f"{states} states and {samples} samples are not possible", "1 to 1000 states and 1 to 100000 samples are")
+        return _asked(Stress, lambda: _native.stress(self._native, rows == "own", states, samples, seed))
+
+    @property
+    def formatted(self) -> str:
+        """The text in its normal form: entries at the left edge and what belongs to them further in. No sign, no comment and no text in quotation marks is touched.
+
+        >>> palmistry.System.parse('system "A decay" state x\\n  drift f\\n x\\' = -x\\noutput x').formatted.splitlines()[1:3]
+        ['drift f', "  x' = -x"]
+        """
+        return _native.formatted(self.name, self.source)
 
     def eval(self, expression: str, at: At = None, digits: int = 20, verdict: str = "certified") -> Value:
         """The value of an expression of the language at a point, to `digits` significant decimal digits, all of them certain.

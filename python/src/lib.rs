@@ -8,6 +8,7 @@ mod questions;
 mod scenes;
 mod states;
 mod stream;
+mod studies;
 mod system;
 mod told;
 mod work;
@@ -28,6 +29,8 @@ mod _native {
     use super::states::StatesDecider;
     #[pymodule_export]
     use super::stream::Stream;
+    #[pymodule_export]
+    use super::studies::{advise, examined, formatted, poses, stress, trade};
     #[pymodule_export]
     use super::system::System;
     #[pymodule_export]

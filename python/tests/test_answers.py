@@ -117,6 +117,36 @@ class TheProgram(unittest.TestCase):
                 for here, there in zip(found.measurements.values(), columns.dtype.names):
                     self.assertTrue(numpy.array_equal(here, columns[there], equal_nan=True), there)
 
+    def test_studies(self):
+        scenes = os.path.join("proofs", "moll2002", "scenes")
+        scene, space = path(scenes, "general.toml"), path(scenes, "figure_5_3.toml")
+        self.assertEqual(palmistry.advise(scene, trials=3, angle1=(0.3, 0.9), seed=7).json, program("advise", scene, "--trials", "3", "--angle1", "0.3,0.9", "--seed", "7"))
+        self.assertEqual(palmistry.advise(space, trials=2, runs=1).json, program("advise", space, "--trials", "2", "--runs", "1"))
+        shape = {"shape": "ellipse:0.02,0.015", "centre": (0.002, 0.0), "margins": [0.2, 0.3], "levels": 2}
+        words = ["--shape", shape["shape"], "--centre", "0.002,0", "--margins", "0.2,0.3", "--levels", "2"]
+        poses = palmistry.poses(**shape)
+        self.assertEqual(poses.json, program("poses", *words))
+        self.assertTrue(poses.page.html.startswith("<!DOCTYPE html>"))
+        file = path("examples", "systems", "beacons.proof")
+        system = palmistry.System.read(file)
+        stress = system.stress(states=1, samples=5, seed=2)
+        self.assertEqual(stress.json, program("stress", file, "--states", "1", "--samples", "5", "--seed", "2"))
+        self.assertTrue(all(svg.startswith("<svg") for svg in stress.pictures.values()))
+        # times are of a run, and so is the front by time; what was decided, and to how many digits, is not
+        trade, printed = system.trade(20, seed=3), program("trade", file, "--samples", "20", "--seed", "3")
+        figures = [{name: row[name] for name in ("number", "derivative", "rank", "digits", "wrong", "undecided", "certified")} for row in trade.json["combinations"]]
+        self.assertEqual(figures, [{name: row[name] for name in figures[0]} for row in printed["combinations"]])
+        self.assertEqual(list(trade.table["wrong"]), [row["wrong"] for row in figures])
+        with tempfile.TemporaryDirectory() as folder:
+            wrong = os.path.join(folder, "wrong.proof")
+            with open(wrong, "w", encoding="utf-8") as text:
+                text.write('system "s" state x drift f x\' = -k*x + j output x')
+            self.assertEqual(palmistry.check(wrong), program("check", wrong)["errors"])
+            self.assertEqual(len(palmistry.check(wrong)), 2)
+        self.assertEqual(system.formatted, palmistry.System.parse(system.formatted).formatted)
+        for wrong in [lambda: palmistry.advise(scene, runs=2), lambda: palmistry.advise(scene, angle2=(2, 1)), lambda: palmistry.poses(), lambda: palmistry.poses(shape="egg:1"), lambda: palmistry.poses(shape="ellipse:1,1", margin=2.0), lambda: palmistry.poses(shape="ellipse:1,1", palms=(2.0, 2.0)), lambda: system.stress("all"), lambda: system.trade(0), lambda: palmistry.advise(scene, trials=0)]:
+            self.assertRaises(Error, wrong)
+
     def test_a_table_is_that_of_the_program(self):
         file = path("examples", "systems", "lorenz.proof")
         found = palmistry.System.read(file).rank(samples=700, coordinates=True).states

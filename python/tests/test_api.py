@@ -38,8 +38,8 @@ SYSTEM''')
 
 #: In the order in which a reader needs them.
 ORDER = [
-    "System", "observe", "stream", "verify", "sweep", "import_model", "from_function", "from_sympy", "from_casadi", "recheck_file", "run", "threads", "latex",
-    "Claims", "Claim", "Rank", "Solutions", "SingularSet", "Accessibility", "Certificate", "Map", "Value", "Verdicts", "Observation", "Recheck", "Page", "Printed", "Table",
+    "System", "observe", "stream", "verify", "sweep", "import_model", "check", "advise", "poses", "from_function", "from_sympy", "from_casadi", "recheck_file", "run", "threads", "latex",
+    "Claims", "Claim", "Rank", "Solutions", "SingularSet", "Accessibility", "Certificate", "Trade", "Stress", "Motions", "Poses", "Map", "Value", "Verdicts", "Observation", "Recheck", "Page", "Printed", "Table",
     "Error", "ReadError", "EvaluationError",
 ]  # fmt: skip
 
@@ -110,8 +110,8 @@ class Api(unittest.TestCase):
         self.assertEqual(silent, [])
 
     def test_examples_in_docstrings(self):
-        names = {"pathlib": pathlib, "tempfile": tempfile, "numpy": numpy, "palmistry": palmistry, "rod": palmistry.System.parse(PENDULUM)}
-        for module in ("answers", "cluster", "observing", "program", "system", "tables", "traced", "translation"):
+        names = {"pathlib": pathlib, "tempfile": tempfile, "numpy": numpy, "palmistry": palmistry, "ROOT": ROOT, "rod": palmistry.System.parse(PENDULUM)}
+        for module in ("answers", "cluster", "observing", "program", "studies", "system", "tables", "traced", "translation"):
             found = doctest.testmod(importlib.import_module(f"palmistry.{module}"), extraglobs=names, optionflags=doctest.ELLIPSIS)
             with self.subTest(module):
                 self.assertEqual(found.failed, 0)

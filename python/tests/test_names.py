@@ -38,7 +38,7 @@ COMMANDS = {
         "--only": "only", "--verdicts": "Claims.evidence", "--latex": "Claim.latex", "--quiet": "*filter `Claims.table` by `ok`*", "--coq": "run", "--junit": "run",
         "--watch": "*of an editor: there is nothing to watch*",
     }),
-    "check": (["System.read"], {}),
+    "check": (["check"], {}),
     "rank": (["System.rank", "System.global_", "System.accessible", "System.singular_set", "System.reparametrise", "sweep"], {
         "--samples": "samples", "--at": "at", "--where": "where", "--order": "order", "--verdict": "verdict", "--digits": "digits", "--table": "table", "--coordinates": "coordinates",
         "--global": "System.global_", "--work": "work", "--accessible": "System.accessible", "--where-it-drops": "System.singular_set", "--out": "SingularSet.page",
@@ -50,22 +50,25 @@ COMMANDS = {
         "--box": "box", "--boxes": "boxes", "--budget": "budget", "--map": "map", "--order": "order", "--rows": "rows", "--out": "Certificate.map_svg",
         **dict.fromkeys(["--depth", "--merge", "--merged", "--missing", "--part", "--shard", "--state", "--verdict-boxes", "--verdicts"], "run"),
     }),
-    "trade": (["run"], {}),
-    "stress": (["run"], {}),
+    "trade": (["System.trade"], {"--samples": "samples", "--out": "Trade.svg"}),
+    "stress": (["System.stress"], {"--rows": "rows", "--states": "states", "--samples": "samples", "--out": "Stress.pictures", "--paper": "run"}),
     "eval": (["System.eval"], {"--at": "at", "--digits": "digits", "--verdict": "verdict", "--latex": "Value.latex"}),
     "observe": (["observe", "stream", "cluster.sweep_command"], {
         "--data": "data", "--studies": "studies", "--out": "Observation.page", "--record": "Observation.measurements", "--motion": "Observation.motion", "--track": "Observation.track",
         "--outline": "Observation.outline", "--shard": "shards", "--part": "folder", "--merge": "cluster.sweep_command", "--missing": "cluster.missing",
     }),
-    "advise": (["run"], {}),
-    "poses": (["run"], {}),
+    "advise": (["advise"], {f"--{name}": name for name in ("trials", "angle1", "angle2", "rate", "runs")}),
+    "poses": (["poses"], {
+        **{f"--{name}": name for name in ("shape", "centre", "palms", "margin", "margins", "turn", "pad", "tolerance", "grid", "levels")},
+        "--out": "Poses.page", **dict.fromkeys(["--bodies", "--family", "--plans", "--seed"], "run"),
+    }),
     "import": (["import_model"], {
         "--from": "format", "--model": "model", "--output": "outputs", "--unknown": "unknown", "--input": "inputs", "--unknown-input": "unknown_inputs", "--state": "states",
         "--out": "System.source",
     }),
     "new": (["run"], {}),
     "demo": (["run"], {}),
-    "fmt": (["run"], {}),
+    "fmt": (["System.formatted"], {"--check": "*compare `System.formatted` with `System.source`*"}),
 }
 
 #: What a Python program has no use for.
@@ -104,13 +107,13 @@ class Names(unittest.TestCase):
                 continue
             homes, named = COMMANDS[command]
             for home in homes:
-                self.assertTrue(callable(found(home)), home)
+                self.assertIsNotNone(found(home), home)
             lines.append(f"| `{command}` | | {', '.join(f'`{home}`' for home in homes)} |")
             there = options(command)
             self.assertEqual(set(named) - set(there), set(), f"{command} has no such option")
             for option in there:
                 by_run = homes == ["run"]
-                name = EVERYWHERE.get(option) if option in EVERYWHERE and not (by_run and option == "--seed") else named.get(option, "run" if by_run else None)
+                name = named.get(option) or ("run" if by_run and option != "--json" else EVERYWHERE.get(option))
                 self.assertIsNotNone(name, f"{command} {option} has no name in Python")
                 if name == "run":
                     name = f"`run(\"{command}\", ..., {option[2:].replace('-', '_')}=...)`"
