@@ -72,7 +72,8 @@ impl MovingWindow {
     /// How well a state explains a window.
     fn fit(&self, task: &Task<'_>, window: &Window<'_>, expansion: &WindowExpansion) -> Fit {
         let differences = &expansion.counted;
-        let read = || window.measured.iter().flatten();
+        let read = || window.measured.iter().flatten().filter(|value| !value.is_nan());
+        let not_counted = window.not_counted();
         let square: f64 = read().map(|value| value * value).sum();
         // nothing is read of an implicit output: it is as large as what is sought makes its terms
         let sizes = Self::sizes(task, window);
@@ -88,6 +89,7 @@ impl MovingWindow {
         let taken = if task.exact { task.full.states.len() - task.estimated() } else { 0 };
         let misfit = Misfit {
             differences,
+            unmeasured: &not_counted,
             slopes: Some(&expansion.slopes),
             loss: window.loss.0,
             outputs: task.full.outputs.len(),

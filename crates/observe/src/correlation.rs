@@ -15,6 +15,8 @@ const FEWEST: usize = 12;
 pub(super) struct Neighbours<'a> {
     /// In the unit of the readings, sample by sample; none where a reading does not count.
     pub residuals: &'a [Option<f64>],
+    /// The places where nothing was measured, in their order: neighbours are those before and after them.
+    pub unmeasured: &'a [usize],
     /// Outputs a sample: so many places further is the same output, one sample later.
     pub outputs: usize,
     /// So many of the first are no readings.
@@ -34,11 +36,12 @@ impl Neighbours<'_> {
     ///
     /// Residuals that are smaller than their stated errors agree by no more than they are large, and pass.
     pub fn probability(&self) -> f64 {
+        let measured = |place: &usize| self.unmeasured.binary_search(place).is_err();
+        let next = |i: usize| (i + self.outputs..self.residuals.len()).step_by(self.outputs).find(measured);
         let pairs: Vec<(usize, usize)> = (self.relations..self.residuals.len())
-            .map(|i| (i, i + self.outputs))
-            .filter(|(i, j)| {
-                matches!((self.residuals.get(*i), self.residuals.get(*j)), (Some(Some(_)), Some(Some(_))))
-            })
+            .filter(|i| self.residuals[*i].is_some())
+            .filter_map(|i| next(i).map(|j| (i, j)))
+            .filter(|(_, j)| self.residuals[*j].is_some())
             .collect();
         if pairs.len() < FEWEST {
             return 1.0;
@@ -103,6 +106,7 @@ mod tests {
         let residuals: Vec<Option<f64>> = left.iter().map(|value| Some(*value)).collect();
         let known = Neighbours {
             residuals: &residuals,
+            unmeasured: &[],
             outputs: 2,
             relations: 0,
             slopes: &slopes,

@@ -10,7 +10,8 @@ use super::task::Task;
 use super::trace::{is_asked, suspects};
 use super::track::{Update, UpdateEnd};
 use super::weights::{self, Weights};
-use super::{Order, cramer_rao};
+use super::window::Window;
+use super::{Lost, Order, Signals, cramer_rao};
 use nalgebra::DVector;
 use std::sync::Arc;
 use std::time::Instant;
@@ -68,14 +69,13 @@ impl MovingWindow {
             let before = update.estimate.clone();
             let mut window = Self::window(&own, &before, rows, clamped);
             window.start[task.estimated()..].clone_from_slice(&update.outputs);
-            let weights =
-                match Weights::of(&own, &window.start, window.times, taken_off.as_ref(), task.signals) {
-                    Ok(weights) => Arc::new(weights),
-                    Err(lost) => {
-                        update.end = UpdateEnd::Lost(lost);
-                        break;
-                    }
-                };
+            let weights = match weights_of(&own, &window, taken_off.as_ref(), task.signals) {
+                Ok(weights) => Arc::new(weights),
+                Err(lost) => {
+                    update.end = UpdateEnd::Lost(lost);
+                    break;
+                }
+            };
             window.weights = Some(weights.clone());
             let (next, left) = self.attempt_in(&own, &window);
             update = next;
@@ -113,7 +113,7 @@ impl MovingWindow {
             window.start[task.estimated()..].clone_from_slice(outputs);
         }
         window.arrival = None;
-        let weights = Weights::of(task, &window.start, window.times, None, task.signals).ok()?;
+        let weights = weights_of(task, &window, None, task.signals).ok()?;
         window.weights = Some(Arc::new(weights));
         let expansion = window.expand(&window.unknowns(&window.start), Order::First).ok()?;
         Some(expansion.differences.norm_squared()).filter(|square| square.is_finite())
@@ -142,8 +142,7 @@ impl MovingWindow {
         let mut window = Self::window(task, belief, rows, clamped);
         let sizes = Self::sizes(task, &window);
         let (mut found, mut condition) = (vec![f64::INFINITY; window.free.len()], f64::INFINITY);
-        let weights = weights::are_needed(task)
-            .then(|| Weights::of(task, &window.start, window.times, None, task.signals));
+        let weights = weights::are_needed(task).then(|| weights_of(task, &window, None, task.signals));
         if let Ok(weights) = weights.transpose() {
             window.weights = weights.map(Arc::new);
             if let Ok(expansion) = window.expand(&window.unknowns(&window.start), Order::First) {
@@ -159,4 +158,15 @@ impl MovingWindow {
         }
         (bounds, condition)
     }
+}
+
+/// The weights of a window from where it starts.
+fn weights_of(
+    task: &Task<'_>,
+    window: &Window<'_>,
+    taken_off: Option<&DVector<f64>>,
+    read: &Signals,
+) -> Result<Weights, Lost> {
+    let unmeasured = window.unmeasured().collect();
+    Weights::of(task, (&window.start, window.times), unmeasured, taken_off, read)
 }

@@ -28,6 +28,22 @@ pub(super) struct Filtered<'t, 'a> {
 pub(super) struct Innovation {
     pub residual: DVector<f64>,
     pub covariance: DMatrix<f64>,
+    /// The outputs that were measured, of which these are.
+    pub measured: Vec<usize>,
+}
+
+impl Innovation {
+    /// Expected minus read of all outputs; NaN of those that were not measured.
+    pub fn of_all(&self, outputs: usize) -> Vec<f64> {
+        let mut all = vec![f64::NAN; outputs];
+        self.measured.iter().zip(self.residual.iter()).for_each(|(place, own)| all[*place] = *own);
+        all
+    }
+}
+
+/// The places of what was measured among the readings of a sample.
+pub(super) fn measured(read: &[f64]) -> Vec<usize> {
+    (0..read.len()).filter(|place| !read[*place].is_nan()).collect()
 }
 
 impl<'t, 'a> Filtered<'t, 'a> {

@@ -117,6 +117,8 @@ fn is_least(own: f64, other: Option<f64>) -> bool {
 /// What is compared: differences sample by sample, `outputs` of them each, after `unknowns` were fitted.
 pub(super) struct Misfit<'a> {
     pub differences: &'a DVector<f64>,
+    /// The places of those of which nothing was measured: they are zero, and count nowhere.
+    pub unmeasured: &'a [usize],
     /// Their derivatives by what was fitted, where they are known.
     pub slopes: Option<&'a DMatrix<f64>>,
     /// How they were weighed.
@@ -138,12 +140,17 @@ pub(super) struct Misfit<'a> {
 
 impl Misfit<'_> {
     pub fn degrees(&self) -> usize {
-        self.differences.len().saturating_sub(self.unknowns)
+        (self.differences.len() - self.unmeasured.len()).saturating_sub(self.unknowns)
     }
 
     /// What is left of a reading that is right: by interpolation, and by the rounding of its time.
     pub fn computed(&self) -> f64 {
         COMPUTED * self.size + self.timing
+    }
+
+    /// Whether something was measured of a difference; their places increase.
+    fn is_measured(&self, place: usize) -> bool {
+        self.unmeasured.binary_search(&place).is_err()
     }
 
     fn rms(&self) -> f64 {
@@ -174,11 +181,11 @@ impl Misfit<'_> {
             .differences
             .iter()
             .enumerate()
-            .map(|(i, value)| (!is_out(i, *value)).then_some(*value))
+            .map(|(i, value)| (!is_out(i, *value) && self.is_measured(i)).then_some(*value))
             .collect();
         let count = kept.iter().flatten().count();
-        let outliers = kept.len() - count;
-        let readings = kept.len().saturating_sub(self.relations);
+        let outliers = kept.len() - self.unmeasured.len() - count;
+        let readings = (kept.len() - self.unmeasured.len()).saturating_sub(self.relations);
         let degrees = count.saturating_sub(self.unknowns);
         let length = kept.iter().flatten().map(|value| value * value).sum::<f64>().sqrt();
         // what the computation adds is no error of a reading
@@ -192,7 +199,9 @@ impl Misfit<'_> {
         };
         let alike = self.slopes.filter(|slopes| normal > 0.0 && slopes.nrows() == kept.len()).map(|slopes| {
             let (residuals, outputs, relations) = (&kept[..], self.outputs, self.relations);
-            Neighbours { residuals, outputs, relations, slopes, taken, sigma, coherent }.probability()
+            let unmeasured = self.unmeasured;
+            Neighbours { residuals, unmeasured, outputs, relations, slopes, taken, sigma, coherent }
+                .probability()
         });
         let drift = self.slopes.filter(|slopes| normal > 0.0 && slopes.nrows() == kept.len());
         let drift = drift.and_then(|slopes| self.drift(&kept, slopes, sigma, coherent));
@@ -240,7 +249,7 @@ impl Misfit<'_> {
         let computed = rms <= self.computed().max(self.least);
         let probability = if computed { 1.0 } else { self.independent() };
         let fits = degrees > 0 && probability >= self.alarm && rms.is_finite();
-        let readings = self.differences.len().saturating_sub(self.relations);
+        let readings = (self.differences.len() - self.unmeasured.len()).saturating_sub(self.relations);
         Fit {
             chi_square,
             degrees,
@@ -259,12 +268,8 @@ impl Misfit<'_> {
     /// The probability of neighbours so alike, the least over the outputs times their number.
     fn independent(&self) -> f64 {
         let column = |output: usize| -> Vec<f64> {
-            self.differences
-                .iter()
-                .skip(self.relations + output)
-                .step_by(self.outputs.max(1))
-                .copied()
-                .collect()
+            let places = (self.relations + output..self.differences.len()).step_by(self.outputs.max(1));
+            places.filter(|place| self.is_measured(*place)).map(|place| self.differences[place]).collect()
         };
         let tail = |column: Vec<f64>| {
             let n = column.len() as f64;
@@ -299,6 +304,7 @@ pub fn explains(differences: &DVector<f64>, unknowns: usize, size: f64, noise: N
     let (slopes, loss) = (None, Loss::Squares);
     Misfit {
         differences,
+        unmeasured: &[],
         slopes,
         loss,
         outputs: 2,
@@ -326,6 +332,7 @@ mod tests {
     fn misfit(differences: &DVector<f64>, alarm: f64) -> Misfit<'_> {
         Misfit {
             differences,
+            unmeasured: &[],
             slopes: None,
             loss: Loss::Squares,
             outputs: 2,

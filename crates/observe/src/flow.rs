@@ -212,12 +212,14 @@ impl ModelFlow<'_> {
             Ok(values)
         };
         let failure: Cell<Option<(f64, Refusal)>> = Cell::new(None);
+        // what is held jumps at a sample, and has its old value up to there
+        let until = Cell::new(f64::INFINITY);
         // the equations of motion are evaluated most: in the same room each time
         let right_hand_side = |time: f64, y: &[f64], dy: &mut [f64]| {
             let (given, inputs) = &mut *room.borrow_mut();
             given.resize(model.columns.len(), 0.0);
             if !given.is_empty() {
-                self.signals.at(&model.columns, time, given);
+                self.signals.at(&model.columns, time.min(until.get()), given);
             }
             inputs.clear();
             inputs.extend(model.rates.sources.iter().map(|source| input(source, y, given)));
@@ -249,7 +251,11 @@ impl ModelFlow<'_> {
             let mut states = vec![y.clone()];
             let most = MOST_EVALUATIONS.saturating_mul(times.len());
             let tell = |_: usize, y: &[f64]| states.push(y.to_vec());
-            let way = quick.go_through(&right_hand_side, times, &mut y.clone(), (self.tolerance, most), tell);
+            let towards = |time: f64| until.set(if self.signals.jump() { time.next_down() } else { time });
+            let stops: Option<&dyn Fn(f64)> = if self.signals.is_smooth() { None } else { Some(&towards) };
+            let effort = (self.tolerance, most);
+            let way = quick.go_through(&right_hand_side, times, &mut y.clone(), effort, stops, tell);
+            until.set(f64::INFINITY);
             way.map_err(|(time, stopped)| match (failure.get(), stopped) {
                 (Some((time, refusal)), _) => refuse(time, refusal),
                 (None, Stopped::Spent) => Lost { time, why: spent() },
@@ -264,6 +270,10 @@ impl ModelFlow<'_> {
         for (i, time) in times.iter().enumerate() {
             if i > 0 {
                 failure.set(None);
+                if self.signals.jump() {
+                    until.set(time.next_down());
+                    quick.begin_anew();
+                }
                 if quick.take(&right_hand_side, times[i - 1], *time, &mut y, CAREFUL * self.tolerance) {
                     let values = expected(*time, &y)?;
                     samples.push(sample(*time, start.len(), free.len(), size, &y, &values));

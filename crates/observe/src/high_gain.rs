@@ -104,7 +104,9 @@ impl Observer for HighGain {
             let residual: Vec<f64> = seen.zip(&read).filter_map(|(seen, read)| Some(seen? - read)).collect();
             if row > 0 {
                 let covariance = error.of_residual(&canonical.places(), task.signals.sample(row));
-                so_far.compare(&Innovation { residual: DVector::from_column_slice(&residual), covariance });
+                let measured = (0..residual.len()).collect();
+                let residual = DVector::from_column_slice(&residual);
+                so_far.compare(&Innovation { residual, covariance, measured });
             }
             so_far.believe(times[row], state, &error.covariance().diagonal(), residual);
         };
@@ -204,7 +206,7 @@ fn inputs_at(task: &Task<'_>, model: &Model, formulas: &Formulas, time: f64, x: 
 impl Canonical {
     /// The canonical form of a task's model, where it has one at the first guess.
     fn new(task: &Task<'_>, state: &[f64]) -> Result<Canonical, String> {
-        if let Some(why) = task.refuses_implicit() {
+        if let Some(why) = task.refuses_implicit().or_else(|| task.refuses_sparse()) {
             return Err(why);
         }
         let mut model = Model::clone(&task.full);

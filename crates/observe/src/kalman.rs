@@ -1,6 +1,6 @@
 //! The extended Kalman filter, the field's usual choice.
 
-use super::filtered::{Filtered, Innovation};
+use super::filtered::{Filtered, Innovation, measured};
 use super::task::{Observer, Task};
 use super::track::Track;
 use super::{Learned, Lost, Order};
@@ -76,7 +76,7 @@ impl Observer for Kalman {
             let innovation = correct(task, &mut state, &mut covariance, &noise, row);
             innovation.iter().for_each(|own| so_far.compare_white(own));
             so_far.hold(times[row], &mut state, &covariance);
-            let residual = innovation.map(|own| own.residual.as_slice().to_vec()).unwrap_or_default();
+            let residual = innovation.map(|own| own.of_all(noise.len())).unwrap_or_default();
             so_far.believe(times[row], state.as_slice(), &covariance.diagonal(), residual);
         }
         let mut track = so_far.end();
@@ -113,9 +113,14 @@ fn correct(
         .ok()?;
     let here = here.first()?;
     let read = task.readings(row);
-    let residual = DVector::from_fn(read.len(), |i, _| here.outputs[i] - read[i]);
-    let h = &here.output_slopes;
-    let noise = DMatrix::from_diagonal(variances);
+    let measured = measured(&read);
+    if measured.is_empty() {
+        return None;
+    }
+    let residual =
+        DVector::from_iterator(measured.len(), measured.iter().map(|i| here.outputs[*i] - read[*i]));
+    let h = &here.output_slopes.select_rows(&measured);
+    let noise = DMatrix::from_diagonal(&variances.select_rows(&measured));
     let innovation = h * &*covariance * h.transpose() + &noise;
     let gain = Cholesky::new(innovation.clone())?.solve(&(h * &*covariance)).transpose();
     *state -= &gain * &residual;
@@ -123,5 +128,5 @@ fn correct(
     let rest = DMatrix::identity(state.len(), state.len()) - &gain * h;
     let corrected = &rest * &*covariance * rest.transpose() + &gain * noise * gain.transpose();
     *covariance = (&corrected + corrected.transpose()) * 0.5;
-    Some(Innovation { residual, covariance: innovation })
+    Some(Innovation { residual, covariance: innovation, measured })
 }

@@ -88,12 +88,13 @@ pub use multiple_shooting::{MultipleShooting, Shooting};
 pub use newton::Newton;
 pub use objection::{MotionRankFound, Objection, PoleMet};
 pub use record::{
-    ColumnNames, ColumnSource, Fault, FaultKind, FaultRules, OnFault, Record, RecordError, RecordReading,
+    ColumnNames, ColumnSource, EmptyCells, Fault, FaultKind, FaultRules, OnFault, Record, RecordError,
+    RecordReading, SparseColumn,
 };
 #[doc(hidden)]
 pub use record::{RecordRows, RowStream, STREAM, TIME, faults_of};
 pub use response::{Response, ResponseError, ResponseQuestion, response};
-pub use signal::{SignalError, Signals};
+pub use signal::{Interpolation, SignalError, Signals};
 pub use suspect::{Suspect, SuspectKind};
 pub use task::{EstimateQuestion, Observer, Task};
 pub use together::{Innovations, Seam, Tested, Together};

@@ -203,7 +203,7 @@ impl MultipleShooting {
         let found: Vec<Option<Found>> = (0..all).into_par_iter().map(one).collect();
         let mut found: Vec<Found> = found.into_iter().flatten().collect();
         found.sort_by(|a, b| (a.misfit + a.gaps).total_cmp(&(b.misfit + b.gaps)));
-        let compared = (segments.measured.len() * segments.spread.len()) as f64;
+        let compared = segments.measured.iter().flatten().filter(|read| !read.is_nan()).count() as f64;
         let mut candidates: Vec<Candidate> = Vec::new();
         for found in found {
             let state = segments.state(&found.nodes, 0)[..task.estimated()].to_vec();
@@ -235,7 +235,8 @@ impl MultipleShooting {
             let low = values.iter().copied().fold(f64::INFINITY, f64::min);
             let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let least = (1e-6 * low.abs().max(high.abs())).max(task.sigma);
-            ((high - low) / 2.0).max(least)
+            // of what was not measured here nothing is told
+            if high < low { task.sigma } else { ((high - low) / 2.0).max(least) }
         };
         // nothing is read of an implicit output: it is as large as at the guess
         let first = task.full_flow().follow(&base, &[], &times[rows.start..=rows.start], super::Order::Value);

@@ -13,7 +13,7 @@ pub(super) struct Segments<'a> {
     pub flow: ModelFlow<'a>,
     /// In s; of the window's samples.
     pub times: &'a [f64],
-    /// What was read, a row a sample.
+    /// What was read, a row a sample; NaN where an output was not measured.
     pub measured: Vec<Vec<f64>>,
     /// The samples of each segment; the last one of a segment is the first of the next.
     pub rows: Vec<Range<usize>>,
@@ -97,7 +97,11 @@ impl Segments<'_> {
         for (i, sample) in samples.iter().take(compared).enumerate() {
             for output in 0..outputs {
                 let (row, spread) = (i * outputs + output, self.spread[output]);
-                differences[row] = (sample.outputs[output] - self.measured[rows.start + i][output]) / spread;
+                let read = self.measured[rows.start + i][output];
+                if read.is_nan() {
+                    continue;
+                }
+                differences[row] = (sample.outputs[output] - read) / spread;
                 for (j, state) in free.iter().enumerate() {
                     slopes[(row, j)] = sample.output_slopes[(output, j)] * self.sizes[*state] / spread;
                 }

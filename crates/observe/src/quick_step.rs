@@ -64,7 +64,7 @@ impl QuickSteps {
     }
 
     /// Takes `y` through increasing times, from the first to the last, in steps as long as the tolerance allows, and tells the place and the state of each
-    /// after the first, interpolated between the steps.
+    /// after the first, interpolated between the steps. Where the rates have kinks or jumps there it `stops` at each of them: that is told before the steps towards it are taken.
     ///
     /// # Errors
     /// Where and why it stops.
@@ -74,6 +74,7 @@ impl QuickSteps {
         times: &[f64],
         y: &mut [f64],
         (tolerance, most): (f64, usize),
+        stops: Option<&dyn Fn(f64)>,
         mut tell: impl FnMut(usize, &[f64]),
     ) -> Result<(), (f64, Stopped)> {
         let [from, .., end] = *times else { return Ok(()) };
@@ -84,7 +85,13 @@ impl QuickSteps {
             if 6 * steps > most {
                 return Err((time, Stopped::Spent));
             }
-            let left = end - time;
+            let left = match stops {
+                Some(towards) => {
+                    towards(times[next]);
+                    times[next] - time
+                }
+                None => end - time,
+            };
             // two even steps rather than a long one and a rest
             let length = if step >= left { left } else { step.min(left / 2.0) };
             self.step(f, time, length, y);
@@ -98,13 +105,20 @@ impl QuickSteps {
                 }
                 continue;
             }
-            let to = if length == left { end } else { time + length };
+            let to = match stops {
+                _ if length < left => time + length,
+                Some(_) => times[next],
+                None => end,
+            };
             while next < times.len() && times[next] < to {
                 self.interpolate((times[next] - time) / length, length, y, &mut there);
                 tell(next, &there);
                 next += 1;
             }
             self.arrive(y);
+            if stops.is_some() && length == left {
+                self.begin_anew();
+            }
             time = to;
             while next < times.len() && times[next] == to {
                 tell(next, y);
@@ -211,7 +225,9 @@ mod tests {
                 assert_eq!(place, found.len());
                 found.push(state.to_vec());
             };
-            QuickSteps::default().go_through(&counted, &times, &mut y, (tolerance, 10_000), tell).unwrap();
+            QuickSteps::default()
+                .go_through(&counted, &times, &mut y, (tolerance, 10_000), None, tell)
+                .unwrap();
             assert!(f64::from(count.get()) < most * times.len() as f64, "{} evaluations", count.get());
             assert_eq!(found.len(), times.len());
             assert_eq!(found.last(), Some(&y));
@@ -230,12 +246,13 @@ mod tests {
         let away = |_: f64, _: &[f64], dy: &mut [f64]| dy[0] = 1e300;
         let mut y = [f64::MAX];
         assert!(!QuickSteps::default().take(&away, 0.0, 1e9, &mut y, 1e-6));
-        let way = QuickSteps::default().go_through(&away, &[0.0, 1e9], &mut y, (1e-6, 10_000), |_, _| {
-            panic!("nothing is there");
-        });
+        let way =
+            QuickSteps::default().go_through(&away, &[0.0, 1e9], &mut y, (1e-6, 10_000), None, |_, _| {
+                panic!("nothing is there");
+            });
         assert!(way.is_err() && y == [f64::MAX]);
         for times in [&[][..], &[1.0]] {
-            let way = QuickSteps::default().go_through(&away, times, &mut y, (1e-6, 10_000), |_, _| {
+            let way = QuickSteps::default().go_through(&away, times, &mut y, (1e-6, 10_000), None, |_, _| {
                 panic!("no sample follows");
             });
             assert_eq!(way, Ok(()));
@@ -253,12 +270,48 @@ mod tests {
                 &[0.0, 0.5, 2.0],
                 &mut [1.0],
                 (1e-7, most),
+                None,
                 |_, _| told += 1,
             );
             let (time, stopped) = way.unwrap_err();
             // the pole of what is integrated is as far from that of the equation as the tolerance moves it
             let is_there = stopped == why && (from..1.0 + 1e-6).contains(&time);
             assert!(is_there && told == usize::from(time >= 0.5), "{time} {stopped:?} {told}");
+        }
+    }
+
+    /// Rates with a kink at each sample, and with a jump: steps that stop there come to the integral, and no step is refused for it.
+    #[test]
+    fn steps_stop_where_rates_have_kinks() {
+        let times: Vec<f64> = (0..=40).map(f64::from).collect();
+        let until = std::cell::Cell::new(f64::INFINITY);
+        let towards = |time: f64| until.set(time.next_down());
+        for (jumps, integral) in [(false, 20.0), (true, 20.0)] {
+            let count = std::cell::Cell::new(0);
+            let rates = |time: f64, _: &[f64], rates: &mut [f64]| {
+                count.set(count.get() + 1);
+                let time = if jumps { time.min(until.get()) } else { time };
+                let whole = time.floor();
+                let saw = if whole as i64 % 2 == 0 { time - whole } else { 1.0 - (time - whole) };
+                rates[0] = if jumps { f64::from(whole as i64 % 2 == 0) } else { saw };
+            };
+            let (mut y, mut seen) = (vec![0.0], 0);
+            let tell = |place: usize, y: &[f64]| {
+                seen += 1;
+                assert_eq!(place, seen);
+                let half = if jumps { place.div_ceil(2) as f64 } else { place as f64 / 2.0 };
+                assert!((y[0] - half).abs() < 1e-12, "{place}: {}", y[0]);
+            };
+            let way = QuickSteps::default().go_through(
+                &rates,
+                &times,
+                &mut y,
+                (1e-9, 10_000),
+                Some(&towards),
+                tell,
+            );
+            assert_eq!((way, seen), (Ok(()), 40));
+            assert!((y[0] - integral).abs() < 1e-12 && count.get() <= 7 * 41, "{}", count.get());
         }
     }
 }

@@ -2,9 +2,33 @@
 
 use super::Record;
 use num_dual::{Dual64, DualNum};
+use serde::Deserialize;
 
-/// So many samples carry the curve at a time: its error is of this order in the time between two samples.
+/// So many samples carry the curve at a time at most: its error is of this order in the time between two samples.
 const POINTS: usize = 8;
+
+/// How a column goes from one of its samples to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Interpolation {
+    /// `polynomial`: by the polynomial through the nearest eight samples, as what was sampled much faster than it changes.
+    #[default]
+    Polynomial,
+    /// `linear`: by a straight line, as what changes between samples in ways that nobody knows.
+    Linear,
+    /// `hold`: it keeps its value until the next sample, as a command does.
+    Hold,
+}
+
+impl Interpolation {
+    fn points(self) -> usize {
+        match self {
+            Interpolation::Polynomial => POINTS,
+            Interpolation::Linear => 2,
+            Interpolation::Hold => 1,
+        }
+    }
+}
 
 /// Why a table is no set of signals.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -24,7 +48,9 @@ pub enum SignalError {
     Order { row: usize },
 }
 
-/// Columns of numbers over one column of times (s), and between the times the polynomials through the nearest eight samples.
+/// Columns of numbers over one column of times (s), and between the times the curves through the nearest samples.
+///
+/// A column in which a sample was not measured, which is NaN there, has no curve: it is one of outputs, which are compared sample by sample.
 #[derive(Clone, Debug)]
 pub struct Signals {
     times: Vec<f64>,
@@ -34,19 +60,20 @@ pub struct Signals {
     /// that keeps them near one.
     weights: Vec<Vec<f64>>,
     points: usize,
+    interpolation: Interpolation,
     unit: f64,
     /// The samples that are looked at; those beside them carry the curves alone.
     shown: std::ops::Range<usize>,
 }
 
 impl Signals {
-    /// The columns of a recording.
+    /// The columns of a recording; what was not measured in a sample is NaN there.
     ///
     /// # Errors
     /// As for [`Signals::new`].
     pub fn of_record(record: &Record) -> Result<Signals, SignalError> {
         let column = |name: &String| Some((name.clone(), record.column(name)?.to_vec()));
-        Signals::new(record.times().to_vec(), record.names().iter().filter_map(column).collect())
+        Signals::sparse(record.times().to_vec(), record.names().iter().filter_map(column).collect())
     }
 
     /// Of times and named columns.
@@ -54,6 +81,19 @@ impl Signals {
     /// # Errors
     /// Where the times do not increase, a number is not finite, or a column's length differs.
     pub fn new(times: Vec<f64>, columns: Vec<(String, Vec<f64>)>) -> Result<Signals, SignalError> {
+        for (name, column) in &columns {
+            if let Some(row) = column.iter().position(|value| !value.is_finite()) {
+                return Err(SignalError::NotFinite { name: name.clone(), row: row + 1, value: column[row] });
+            }
+        }
+        Signals::sparse(times, columns)
+    }
+
+    /// The same of columns in which a sample that was not measured is NaN.
+    ///
+    /// # Errors
+    /// As for [`Signals::new`], but for NaN.
+    pub fn sparse(times: Vec<f64>, columns: Vec<(String, Vec<f64>)>) -> Result<Signals, SignalError> {
         if times.is_empty() {
             return Err(SignalError::Empty);
         }
@@ -71,22 +111,50 @@ impl Signals {
                     times: times.len(),
                 });
             }
-            if let Some(row) = column.iter().position(|value| !value.is_finite()) {
+            if let Some(row) = column.iter().position(|value| value.is_infinite()) {
                 return Err(SignalError::NotFinite { name: name.clone(), row: row + 1, value: column[row] });
             }
         }
-        let points = POINTS.min(times.len());
         let spread = times[times.len() - 1] - times[0];
         let unit = if spread > 0.0 { spread / (times.len() - 1) as f64 } else { 1.0 };
-        let weight = |run: &[f64], i: usize| -> f64 {
-            let others = run.iter().enumerate().filter(|(j, _)| *j != i);
-            1.0 / others.map(|(_, other)| (run[i] - other) / unit).product::<f64>()
-        };
-        let weights =
-            times.windows(points).map(|run| (0..points).map(|i| weight(run, i)).collect()).collect();
         let (names, columns) = columns.into_iter().unzip();
         let shown = 0..times.len();
-        Ok(Signals { times, names, columns, weights, points, unit, shown })
+        let interpolation = Interpolation::default();
+        let bare =
+            Signals { times, names, columns, weights: Vec::new(), points: 0, interpolation, unit, shown };
+        Ok(bare.interpolated(interpolation))
+    }
+
+    /// The same that go otherwise from one sample to the next.
+    pub fn interpolated(self, interpolation: Interpolation) -> Signals {
+        let points = interpolation.points().min(self.times.len());
+        let weight = |run: &[f64], i: usize| -> f64 {
+            let others = run.iter().enumerate().filter(|(j, _)| *j != i);
+            1.0 / others.map(|(_, other)| (run[i] - other) / self.unit).product::<f64>()
+        };
+        let runs = self.times.windows(points);
+        let weights = runs.map(|run| (0..points).map(|i| weight(run, i)).collect()).collect();
+        Signals { weights, points, interpolation, ..self }
+    }
+
+    /// How columns go from one sample to the next.
+    pub fn interpolation(&self) -> Interpolation {
+        self.interpolation
+    }
+
+    /// Whether columns jump at samples, so that what is followed has to be so from one to the next.
+    pub(super) fn jump(&self) -> bool {
+        self.interpolation == Interpolation::Hold
+    }
+
+    /// Whether columns have no kinks at samples.
+    pub(super) fn is_smooth(&self) -> bool {
+        self.interpolation == Interpolation::Polynomial
+    }
+
+    /// Whether each sample of a column was measured.
+    pub fn is_whole(&self, place: usize) -> bool {
+        self.column(place).iter().all(|value| !value.is_nan())
     }
 
     /// The same of which some samples are looked at, and the others carry the curves beside them: a part of a longer recording.
@@ -151,7 +219,7 @@ impl Signals {
     pub(super) fn first_carrier(&self, time: f64) -> usize {
         let last = self.times.len() - self.points;
         let after = self.times.partition_point(|other| *other <= time);
-        after.saturating_sub(self.points / 2).min(last)
+        after.saturating_sub(self.points.div_ceil(2)).min(last)
     }
 
     /// The weight of each of the samples from `start` on in the value of their curve at a time.
@@ -245,6 +313,23 @@ mod tests {
         assert_eq!(refused(&[0.0, 1.0], &[1.0]), "column s1 has 1 values for 2 times");
         assert_eq!(refused(&[0.0, 1.0], &[1.0, f64::NAN]), "column s1 holds NaN in row 2");
         assert_eq!(refused(&[0.0, 1.0, 1.0], &[1.0; 3]), "the time in row 3 does not follow the one before");
+    }
+
+    #[test]
+    fn a_line_and_a_step() {
+        let columns =
+            vec![("x".to_owned(), vec![1.0, 3.0, -1.0]), ("y".to_owned(), vec![f64::NAN, 0.0, f64::NAN])];
+        let signals = Signals::sparse(vec![0.0, 1.0, 3.0], columns).unwrap();
+        assert!(signals.is_whole(0) && !signals.is_whole(1));
+        let at = |interpolation: Interpolation, time: f64| {
+            let mut value = [0.0];
+            signals.clone().interpolated(interpolation).at(&[0], time, &mut value);
+            value[0]
+        };
+        let line = |time| at(Interpolation::Linear, time);
+        assert_eq!([0.0, 0.25, 1.0, 2.0, 3.0].map(line), [1.0, 1.5, 3.0, 1.0, -1.0]);
+        let step = |time| at(Interpolation::Hold, time);
+        assert_eq!([0.0, 0.9, 1.0, 2.9, 3.0].map(step), [1.0, 1.0, 3.0, 3.0, -1.0]);
     }
 
     #[test]

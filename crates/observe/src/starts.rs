@@ -71,8 +71,8 @@ pub(super) fn first_nodes(
     let node = |(node, segment): (usize, &Range<usize>)| {
         let row = rows.start + segment.start;
         let value = |place: &usize| match task.full.column_of(*place) {
-            Some(column) => task.signals.column(column)[row],
-            None => state[*place],
+            Some(column) if !task.signals.column(column)[row].is_nan() => task.signals.column(column)[row],
+            _ => state[*place],
         };
         let values = segments.moving.iter().map(|place| bounds.within(node, *place, value(place)));
         DVector::from_iterator(segments.moving.len(), values)

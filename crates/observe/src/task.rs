@@ -262,7 +262,20 @@ impl<'a> Task<'a> {
         })
     }
 
-    /// What was read of the outputs at a sample; zero of those that are zero.
+    /// Why a method that needs the curves of all outputs does nothing here: of some not each sample was measured.
+    pub(super) fn refuses_sparse(&self) -> Option<String> {
+        let is_sparse =
+            |name: &&String| self.signals.find(name).is_some_and(|place| !self.signals.is_whole(place));
+        let names: Vec<&str> = self.full.outputs.iter().filter(is_sparse).map(String::as_str).collect();
+        (!names.is_empty()).then(|| {
+            format!(
+                "it needs all outputs in each sample, and {} was not measured in some: use another method",
+                names.join(", ")
+            )
+        })
+    }
+
+    /// What was read of the outputs at a sample; zero of those that are zero, NaN of those that were not measured then.
     pub(super) fn readings(&self, row: usize) -> Vec<f64> {
         let read = |column: &Option<usize>| column.map_or(0.0, |column| self.signals.column(column)[row]);
         self.full.measured.iter().map(read).collect()

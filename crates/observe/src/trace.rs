@@ -131,7 +131,11 @@ fn directions(task: &Task<'_>, window: &Window<'_>, here: &WindowExpansion) -> V
     let (system, wanted) = &*task.source;
     let mut all = Vec::new();
     let mut add = |name: &str, kind: SuspectKind, slope: Option<DVector<f64>>| {
-        all.extend(slope.map(|slope| Direction { name: name.to_owned(), kind, slope }));
+        let measured = |mut slope: DVector<f64>| {
+            window.unmeasured().for_each(|place| slope[place] = 0.0);
+            slope
+        };
+        all.extend(slope.map(|own| Direction { name: name.to_owned(), kind, slope: measured(own) }));
     };
     let question = |known: &std::collections::BTreeMap<String, f64>| ModelQuestion {
         followed: task.full.states.clone(),

@@ -1,6 +1,6 @@
 //! The unscented Kalman filter: no derivative is taken, points about the estimate are followed instead.
 
-use super::filtered::{Filtered, Innovation};
+use super::filtered::{Filtered, Innovation, measured};
 use super::task::{Observer, Task};
 use super::track::Track;
 use super::{Learned, Lost, Order};
@@ -131,7 +131,7 @@ impl Observer for Unscented {
             if let Some((there, spread, innovation)) = self.correct(task, &state, &root, &noise, row) {
                 (state, root) = (there, spread);
                 so_far.compare_white(&innovation);
-                residual = innovation.residual.as_slice().to_vec();
+                residual = innovation.of_all(noise.len());
             }
             so_far.hold(times[row], &mut state, &(&root * root.transpose()));
             so_far.believe(times[row], state.as_slice(), &variances(&root), residual);
@@ -190,10 +190,16 @@ impl Unscented {
             seen.push(DVector::from_vec(samples.into_iter().next()?.outputs));
         }
         let read = DVector::from_vec(task.readings(row));
+        let measured = measured(read.as_slice());
+        if measured.is_empty() {
+            return None;
+        }
+        let seen: Vec<DVector<f64>> = seen.iter().map(|own| own.select_rows(&measured)).collect();
+        let (read, deviations) = (read.select_rows(&measured), deviations.select_rows(&measured));
         let expected = points.mean(&seen);
         let outputs = points.deviations(&seen, &expected);
         let states = points.deviations(&points.points, state);
-        let noise = DMatrix::from_diagonal(deviations);
+        let noise = DMatrix::from_diagonal(&deviations);
         let innovation = factor(&[outputs.clone(), noise.clone()])?;
         // gain = Pxy (S S^T)^-1, from the right by its two triangles
         let cross = &states * outputs.transpose();
@@ -203,7 +209,8 @@ impl Unscented {
         let corrected = state - &gain * &residual;
         let root = factor(&[states - &gain * outputs, &gain * noise])?;
         let is_finite = corrected.iter().all(|value| value.is_finite());
-        let innovation = Innovation { residual, covariance: &innovation * innovation.transpose() };
+        let covariance = &innovation * innovation.transpose();
+        let innovation = Innovation { residual, covariance, measured };
         is_finite.then_some((corrected, root, innovation))
     }
 }

@@ -43,6 +43,8 @@ pub(super) struct Weights {
     columns: ColumnErrors,
     /// The errors of the outputs.
     outputs: Vec<ReadingErrors>,
+    /// The places of differences of which nothing was measured, in their order: such a one has no end of an error.
+    unmeasured: Vec<usize>,
 }
 
 /// The columns that drive the model and have errors.
@@ -64,14 +66,14 @@ pub(super) fn are_needed(task: &Task<'_>) -> bool {
 
 impl Weights {
     /// Of a window, from the state at the first of its times and the columns as they are believed to be; `taken_off` is what was taken
-    /// off the readings for that.
+    /// off the readings for that. Of differences at the places `unmeasured`, which increase, nothing is known.
     ///
     /// # Errors
     /// Where the model cannot be followed.
     pub fn of(
         task: &Task<'_>,
-        start: &[f64],
-        times: &[f64],
+        (start, times): (&[f64], &[f64]),
+        unmeasured: Vec<usize>,
         taken_off: Option<&DVector<f64>>,
         read: &Signals,
     ) -> Result<Weights, Lost> {
@@ -101,12 +103,21 @@ impl Weights {
         let recursion = Recursion { sensitivity: &sensitivity, columns: &columns };
         let mut variances = recursion.variances();
         variances.iter_mut().enumerate().for_each(|(i, variance)| *variance += own_variance(&outputs, i));
+        unmeasured.iter().for_each(|place| variances[*place] = 0.0);
         if variances.iter().any(|value| !value.is_finite()) {
             return Err(lost());
         }
         let least = SMALLEST * variances.iter().copied().fold(0.0, f64::max);
-        let factor = recursion.whitening(&|i| own_variance(&outputs, i) + least).ok_or_else(lost)?;
-        Ok(Weights { unit: task.sigma, factor, least, offset, sensitivity, columns, outputs })
+        let own = |i: usize| match unmeasured.binary_search(&i) {
+            Ok(_) => f64::INFINITY,
+            Err(_) => own_variance(&outputs, i) + least,
+        };
+        let factor = recursion.whitening(&own).ok_or_else(lost)?;
+        Ok(Weights { unit: task.sigma, factor, least, offset, sensitivity, columns, outputs, unmeasured })
+    }
+
+    fn is_measured(&self, place: usize) -> bool {
+        self.unmeasured.binary_search(&place).is_err()
     }
 
     fn recursion(&self) -> Recursion<'_> {
@@ -186,7 +197,7 @@ impl Weights {
             rest => exceeded(rest * rest, degrees as f64),
         };
         let probability = least_of([Some(large), drift.map(|own| own.probability)]);
-        let (sigma, from, readings) = (self.unit, NoiseFrom::Stated, left.len());
+        let (sigma, from, readings) = (self.unit, NoiseFrom::Stated, left.len() - self.unmeasured.len());
         let fit = Fit {
             chi_square,
             degrees,
@@ -211,7 +222,10 @@ impl Weights {
         computed: f64,
     ) -> Option<(f64, Option<Drift>)> {
         let recursion = self.recursion();
-        let own = |i: usize| own_variance(&self.outputs, i) + self.least + computed * computed;
+        let own = |i: usize| match self.is_measured(i) {
+            true => own_variance(&self.outputs, i) + self.least + computed * computed,
+            false => f64::INFINITY,
+        };
         let factor = recursion.whitening(&own)?;
         let again = |column: &DVector<f64>| {
             factor.whitened(&recursion, &self.factor.coloured(&recursion, &(column / self.unit)))
@@ -222,6 +236,7 @@ impl Weights {
         let left = &left - &directions * directions.tr_mul(&left);
         let (diagonal, runs) = factor.norms(&recursion);
         let own: f64 = (0..left.len())
+            .filter(|i| self.is_measured(*i))
             .map(|i| {
                 let errors = self.outputs[i % self.outputs.len()];
                 if errors.are_none() {
@@ -240,7 +255,7 @@ impl Weights {
         let rest = left.norm() - allowed;
         let outputs = self.outputs.len();
         let curves = |output: usize| {
-            let curves = slow_curves(left.len(), (outputs, output, 0), |_| true)?;
+            let curves = slow_curves(left.len(), (outputs, output, 0), |place| self.is_measured(place))?;
             Some(each_column(&curves, |column| factor.whitened(&recursion, column)))
         };
         let trend = Trend { residuals: &left, followed: &directions, outputs, coherent: allowed };

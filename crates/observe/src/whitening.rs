@@ -213,7 +213,8 @@ impl Recursion<'_> {
         variances
     }
 
-    /// The factor of the covariance of the differences, their own errors having these variances; none where a number is not finite.
+    /// The factor of the covariance of the differences, their own errors having these variances, infinite ones where nothing was measured; none where a number is not
+    /// finite. What is whitened is zero there.
     pub fn whitening(&self, own: &dyn Fn(usize) -> f64) -> Option<Whitening> {
         let (size, outputs) = (self.size(), self.outputs());
         let mut root: DMatrix<f64> = DMatrix::zeros(size, 0);
@@ -235,6 +236,11 @@ impl Recursion<'_> {
             for output in 0..outputs {
                 let seen = self.seen(sample, output);
                 let variance = own(innovations.len());
+                if variance == f64::INFINITY {
+                    // nothing was measured: the state takes nothing of it
+                    innovations.push(Innovation { variance, gain: DVector::zeros(size) });
+                    continue;
+                }
                 let part = root.tr_mul(&seen);
                 let whole = variance + part.norm_squared();
                 let gain = &root * &part / whole;
@@ -278,7 +284,11 @@ impl Whitening {
     pub fn coloured(&self, recursion: &Recursion<'_>, white: &DVector<f64>) -> DVector<f64> {
         let mut differences = DVector::zeros(white.len());
         self.forwards(recursion, |place, expected| {
-            let off = white[place] * self.innovations[place].variance.sqrt();
+            let variance = self.innovations[place].variance;
+            if variance == f64::INFINITY {
+                return 0.0;
+            }
+            let off = white[place] * variance.sqrt();
             differences[place] = expected + off;
             off
         });

@@ -17,7 +17,7 @@ pub struct Window<'a> {
     pub flow: ModelFlow<'a>,
     /// In s; the first is the time of the state.
     pub times: &'a [f64],
-    /// What was measured: the values of the model's outputs, a row a sample.
+    /// What was measured: the values of the model's outputs, a row a sample; NaN where an output was not measured.
     pub measured: Vec<Vec<f64>>,
     /// The state at the first time; what is not unknown of it stays.
     pub start: Vec<f64>,
@@ -38,8 +38,10 @@ pub struct Window<'a> {
 pub struct WindowExpansion {
     /// `k` of 4.77.
     pub cost: f64,
-    /// The differences `h - y`, sample by sample, as they are.
+    /// The differences `h - y`, sample by sample, as they are; zero where an output was not measured, and so are their derivatives.
     pub left: DVector<f64>,
+    /// How many of them there are where an output was measured.
+    pub compared: usize,
     /// The same, weighted where they have weights: what the error is made of.
     pub differences: DVector<f64>,
     /// The same as they are where the loss is no square, by which the test of fit judges.
@@ -59,7 +61,7 @@ pub struct WindowExpansion {
 impl WindowExpansion {
     /// The root of the mean square of the differences as they are.
     pub fn misfit(&self) -> f64 {
-        self.left.norm() / (self.left.len().max(1) as f64).sqrt()
+        self.left.norm() / (self.compared.max(1) as f64).sqrt()
     }
 }
 
@@ -132,11 +134,28 @@ impl Window<'_> {
         let rows = samples.iter().zip(&self.measured);
         let all =
             rows.flat_map(|(sample, row)| sample.outputs.iter().zip(row).map(|(seen, read)| seen - read));
-        let differences = DVector::from_vec(all.collect());
-        match &self.weights {
-            Some(weights) => differences + &weights.offset,
-            None => differences,
+        let mut differences = DVector::from_vec(all.collect());
+        if let Some(weights) = &self.weights {
+            differences += &weights.offset;
         }
+        self.unmeasured().for_each(|place| differences[place] = 0.0);
+        differences
+    }
+
+    /// The places of differences of which nothing was measured.
+    pub(super) fn unmeasured(&self) -> impl Iterator<Item = usize> + '_ {
+        let read = self.measured.iter().flatten().enumerate();
+        read.filter(|(_, value)| value.is_nan()).map(|(place, _)| place)
+    }
+
+    /// The same by their places among what counts: behind what is known before, which stands for the first sample.
+    pub(super) fn not_counted(&self) -> Vec<usize> {
+        let (relations, skipped) = match self.arrival {
+            Some(_) => (self.relations(), self.of_first()),
+            None => (0, 0),
+        };
+        let counted = self.unmeasured().filter(|place| *place >= skipped);
+        counted.map(|place| place - skipped + relations).collect()
     }
 
     /// Differences in units in which their errors are independent and alike.
@@ -162,6 +181,8 @@ impl Window<'_> {
         for (i, row) in rows.enumerate() {
             slopes.set_row(i, &row);
         }
+        self.unmeasured().for_each(|place| slopes.row_mut(place).fill(0.0));
+        let compared = left.len() - self.unmeasured().count();
         if let Some(weights) = &self.weights {
             slopes = weights.weighted_slopes(&slopes);
         }
@@ -177,6 +198,7 @@ impl Window<'_> {
         if let Some(weights) = &self.weights {
             pull = weights.back(&pull);
         }
+        self.unmeasured().for_each(|place| pull[place] = 0.0);
         let mut skipped = 0;
         if let Some(arrival) = &self.arrival {
             skipped = self.of_first();
@@ -208,6 +230,7 @@ impl Window<'_> {
             end: end.map(|sample| sample.state.clone()).unwrap_or_default(),
             end_slopes: end.map(|sample| sample.slopes.clone()).unwrap_or_default(),
             left,
+            compared,
             counted,
             differences,
             slopes,

@@ -65,6 +65,12 @@ pub(super) fn are_columns(scene: &Scene, signals: &Signals) -> Result<(), SceneE
                 help,
             ));
         }
+        let is_sparse = signals.find(&name).is_some_and(|place| !signals.is_whole(place));
+        if known.delay > 0.0 && is_sparse {
+            let message = format!("'{name}' was not measured in each sample, and its delay cannot be undone");
+            let help = format!("estimate '{name}.delay', or leave out the rows where the cell is empty");
+            return Err(scene.error_at("observer.known", message, "known here", help));
+        }
         if known.gain == 0.0 || known.delay < 0.0 {
             let what = if known.gain == 0.0 { "a gain of zero" } else { "a delay below zero" };
             let help = "a sensor reads gain * x(t - delay) + bias, with a gain that is not zero and a delay that is not negative";
@@ -114,7 +120,7 @@ pub(super) fn corrected(signals: Signals, known: &BTreeMap<String, f64>) -> Resu
         (name.clone(), times.iter().enumerate().map(read).collect())
     };
     let columns = signals.names().iter().enumerate().map(column).collect();
-    Signals::new(times.clone(), columns)
+    Ok(Signals::sparse(times.clone(), columns)?.interpolated(signals.interpolation()))
 }
 
 /// The errors of the readings of a column, as the scene states them; none where nothing is said of the column itself.

@@ -9,7 +9,9 @@ use super::unguided::Unguided;
 use palmistry_lang::{Kind, System, nearest};
 use palmistry_math::expression::{NodeId, Symbol};
 use palmistry_math::number::rational_to_f64;
-use palmistry_observe::{CalibrationKind, ColumnNames, EstimateQuestion, FaultRules, ModelError, Signals};
+use palmistry_observe::{
+    CalibrationKind, ColumnNames, EmptyCells, EstimateQuestion, FaultRules, ModelError, Signals,
+};
 use std::collections::BTreeMap;
 
 /// A scene with its system.
@@ -80,9 +82,21 @@ impl Groundwork {
         needed(&self.scene, &self.system, &self.known)
     }
 
-    /// The scene's rules for faulty rows, with the resolution of what this system's sensors read.
+    /// The scene's rules for faulty rows, with the resolution of what this system's sensors read, and what empty cells mean.
     pub fn fault_rules(&self) -> FaultRules {
-        fault_rules(&self.scene, &self.system)
+        let mut rules = fault_rules(&self.scene, &self.system);
+        let outputs = compared(&self.scene, &self.system);
+        let is_output = |name: &str| self.system.outputs.iter().any(|(output, _)| output == name);
+        // what is compared and drives the model as well is neither left out nor made up
+        for name in self.needed() {
+            let empty = match (outputs.contains(&name), is_output(&name)) {
+                (true, _) => EmptyCells::NotMeasured,
+                (false, false) => EmptyCells::Interpolated,
+                (false, true) => continue,
+            };
+            rules.empty.insert(name, empty);
+        }
+        rules
     }
 }
 
@@ -141,17 +155,7 @@ fn needed(scene: &Scene, system: &System, known: &BTreeMap<String, f64>) -> Vec<
     let driven: Vec<&String> = settings.inputs.values().collect();
     let unknown =
         |name: &str| !known.contains_key(name) && !settings.estimate.iter().any(|other| other == name);
-    let is_sought =
-        |symbol: &Symbol| settings.estimate.iter().any(|name| system.symbol_name(*symbol) == name);
-    // a state that is sought and read has to be there as any other output
-    let is_sought_by = |name: &str| settings.estimate.iter().any(|other| other == name);
-    let is_read = |node: &NodeId| system.graph.symbols_of([*node]).iter().any(is_sought);
-    // nothing is read of an output that is zero
-    let zeros = system.zero_outputs();
-    let outputs = system.outputs.iter().filter(|(_, node)| !zeros.contains(node));
-    let outputs = outputs
-        .filter(|(name, node)| (system.find_symbol(name).is_none() || is_sought_by(name)) && is_read(node));
-    let outputs: Vec<String> = outputs.map(|(name, _)| name.clone()).collect();
+    let outputs = compared(scene, system);
     let symbols = system.symbols().filter(|(symbol, info)| {
         let name = system.symbol_name(*symbol);
         // where outputs tie signals these have derivatives for the rank, which no model has
@@ -166,6 +170,22 @@ fn needed(scene: &Scene, system: &System, known: &BTreeMap<String, f64>) -> Vec<
             }
     });
     symbols.map(|(symbol, _)| system.symbol_name(symbol).to_owned()).chain(outputs).collect()
+}
+
+/// The outputs that are compared with what is sought, and drive nothing.
+fn compared(scene: &Scene, system: &System) -> Vec<String> {
+    let settings = &scene.observer;
+    let is_sought =
+        |symbol: &Symbol| settings.estimate.iter().any(|name| system.symbol_name(*symbol) == name);
+    // a state that is sought and read has to be there as any other output
+    let is_sought_by = |name: &str| settings.estimate.iter().any(|other| other == name);
+    let is_read = |node: &NodeId| system.graph.symbols_of([*node]).iter().any(is_sought);
+    // nothing is read of an output that is zero
+    let zeros = system.zero_outputs();
+    let outputs = system.outputs.iter().filter(|(_, node)| !zeros.contains(node));
+    let outputs = outputs
+        .filter(|(name, node)| (system.find_symbol(name).is_none() || is_sought_by(name)) && is_read(node));
+    outputs.map(|(name, _)| name.clone()).collect()
 }
 
 /// The scene's rules for faulty rows, with the resolution of what this system's sensors read.

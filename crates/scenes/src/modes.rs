@@ -96,8 +96,7 @@ impl Experiment {
             settings.guess = Guess::Sample;
             settings.clamp.clear();
             let ground = Groundwork::of(scene, false)?;
-            let reading =
-                RecordReading { record: self.record.clone(), faults: Vec::new(), left_out: Vec::new() };
+            let reading = RecordReading::whole(self.record.clone());
             let mut experiment = Experiment::with_readings(ground, reading, None, Steady::AreConstants)?;
             experiment.scene.observer.guess = Guess::Values(mode.guess.clone());
             all.push((mode.name.clone(), experiment));

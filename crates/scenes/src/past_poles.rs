@@ -146,7 +146,7 @@ impl Experiment {
         settings.known.retain(|name, _| system.find_symbol(name.split('.').next().unwrap_or(name)).is_some());
         scene.columns.clear();
         let ground = Groundwork::with_system(scene, system, false).ok()?;
-        let reading = RecordReading { record: self.record.clone(), faults: Vec::new(), left_out: Vec::new() };
+        let reading = RecordReading::whole(self.record.clone());
         Experiment::with_readings(ground, reading, None, Steady::AreConstants).ok()
     }
 

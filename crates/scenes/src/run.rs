@@ -16,7 +16,7 @@ use palmistry_io::UNINTERRUPTED;
 use palmistry_lang::System;
 use palmistry_observe::{
     EstimateQuestion, Fault, ModelError, MovingWindow, Noise, Observer, Record, RecordError, RecordReading,
-    RecordRows, Signals, Task, Track, WindowSearch,
+    RecordRows, Signals, SparseColumn, Task, Track, WindowSearch,
 };
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -45,6 +45,10 @@ pub struct Experiment {
     pub origin: f64,
     /// What was wrong with the rows of a file.
     pub faults: Vec<Fault>,
+    /// Columns of a file with empty cells, and what became of these.
+    pub sparse: Vec<SparseColumn>,
+    /// So many rows at the beginning and at the end of a file are left out, because a column that drives the model says nothing there.
+    pub outside: [usize; 2],
     /// The readings as curves of time.
     pub signals: Signals,
     /// What the observers are asked for.
@@ -132,7 +136,7 @@ impl Experiment {
                     record = names.read(&own, record.names()).map_err(place)?;
                     written = Some(own);
                 }
-                (RecordReading { record, faults: Vec::new(), left_out: Vec::new() }, written)
+                (RecordReading::whole(record), written)
             }
             (None, Some(file)) => {
                 let needed = ground.needed();
@@ -159,7 +163,7 @@ impl Experiment {
         steady: Steady,
     ) -> Result<Experiment, SceneError> {
         let Groundwork { scene, system, simulation, begun, described, simulates, known, .. } = ground;
-        let RecordReading { record, faults, .. } = reading;
+        let RecordReading { record, faults, sparse, outside, .. } = reading;
         let (record, origin) = match simulates {
             // simulated times are counted from zero
             true => (record, 0.0),
@@ -172,6 +176,7 @@ impl Experiment {
         let signals =
             signals.map_err(|error| scene.error_at("data", error.to_string(), "these measurements", ""))?;
         channels::are_columns(&scene, &signals)?;
+        let signals = signals.interpolated(scene.data.interpolation);
         let signals = channels::corrected(signals, &scene.observer.known).map_err(|error| {
             scene.error_at("observer.known", error.to_string(), "measurements without these", "")
         })?;
@@ -200,6 +205,8 @@ impl Experiment {
             written,
             origin,
             faults,
+            sparse,
+            outside,
             signals,
             question,
         };

@@ -21,8 +21,12 @@ impl RecordRows {
         if skipped.len() == self.rows.len() {
             return Err(RecordError::NothingLeft { path: self.path, faults });
         }
-        let (record, left_out) = self.numbers(|row| !skipped.contains(&row));
-        Ok(RecordReading { record, faults, left_out })
+        let may_lack = |name: &str| rules.empty.contains_key(name);
+        let (record, left_out) = self.numbers(|row| !skipped.contains(&row), may_lack);
+        let settled = record.settle(rules);
+        let (record, sparse, outside) =
+            settled.map_err(|column| RecordError::NotMeasured { path: self.path, column })?;
+        Ok(RecordReading { record, faults, left_out, sparse, outside })
     }
 }
 
@@ -34,7 +38,7 @@ impl RecordRows {
 /// spike is stands at the head of `spike.rs`. Of more than [`MOST_FAULTS`] the rest is left out.
 pub fn faults_of(rows: &RecordRows, rules: &FaultRules) -> Vec<Fault> {
     let room = |faults: &Vec<Fault>| (MOST_FAULTS + 1).saturating_sub(faults.len());
-    let mut faults = unreadable(rows);
+    let mut faults = unreadable(rows, rules);
     let cells = rows.rows.iter().enumerate().flat_map(|(row, place)| {
         rows.needed.iter().map(move |column| (row, *column, place.cells.get(*column)))
     });
@@ -73,7 +77,7 @@ pub fn faults_of(rows: &RecordRows, rules: &FaultRules) -> Vec<Fault> {
 }
 
 /// The faults for which a row is no row of numbers at all.
-pub(super) fn unreadable(rows: &RecordRows) -> Vec<Fault> {
+pub(super) fn unreadable(rows: &RecordRows, rules: &FaultRules) -> Vec<Fault> {
     let mut faults = Vec::new();
     for (row, place) in rows.rows.iter().enumerate() {
         if faults.len() > MOST_FAULTS {
@@ -85,6 +89,10 @@ pub(super) fn unreadable(rows: &RecordRows) -> Vec<Fault> {
         for &column in &rows.needed {
             let kind = match place.cells.get(column) {
                 Some(Cell::Number(_)) => continue,
+                // a row that was cut off is no row in which something was not measured
+                Some(Cell::Missing) if !place.is_short && rules.empty.contains_key(&rows.names[column]) => {
+                    continue;
+                }
                 Some(Cell::Unreadable(says)) => FaultKind::NotANumber { says: says.clone() },
                 Some(Cell::Missing) | None => FaultKind::Missing,
             };

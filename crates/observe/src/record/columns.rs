@@ -135,7 +135,8 @@ impl ColumnPlan {
                 (cell, _) => cell,
             }
         };
-        Row { line: row.line, surplus: row.surplus, cells: self.places.iter().map(cell).collect() }
+        let cells = self.places.iter().map(cell).collect();
+        Row { cells, ..row }
     }
 
     /// A table with its columns in the order of the plan.

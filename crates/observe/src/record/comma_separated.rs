@@ -40,7 +40,8 @@ pub(super) fn read(path: &Path) -> Result<Table, RecordError> {
             return refuse(format!("it has more than {MOST_CELLS} cells"));
         }
         let surplus = line.len().saturating_sub(names.len());
-        rows.push(Row { line: line.position().map(|at| line_number(bytes, at)), cells, surplus });
+        let is_short = line.len() < names.len();
+        rows.push(Row { line: line.position().map(|at| line_number(bytes, at)), cells, surplus, is_short });
     }
     Ok(Table { names, rows, ..Table::default() })
 }
@@ -112,7 +113,9 @@ pub(super) fn write(record: &Record, file: &mut dyn Write) -> std::io::Result<()
     writer.write_record(header).map_err(io_error)?;
     for (row, time) in record.times.iter().enumerate() {
         let values = std::iter::once(*time).chain(record.columns.iter().map(|column| column[row]));
-        writer.write_record(values.map(|value| format!("{value:?}"))).map_err(io_error)?;
+        // what was not measured is an empty cell
+        let cell = |value: f64| if value.is_nan() { String::new() } else { format!("{value:?}") };
+        writer.write_record(values.map(cell)).map_err(io_error)?;
     }
     writer.flush()
 }

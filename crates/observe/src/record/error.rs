@@ -91,6 +91,19 @@ pub enum RecordError {
         /// All the faults.
         faults: Vec<Fault>,
     },
+    /// Nothing was measured of a column that is needed, while what drives the model is known.
+    #[error(
+        "{}: nothing was measured of the column '{}', or not while what drives the model is known",
+        shown_path(path),
+        shown(column)
+    )]
+    #[diagnostic(help("an empty cell says that nothing was measured then; is it the right column?"))]
+    NotMeasured {
+        /// The file.
+        path: PathBuf,
+        /// The column.
+        column: String,
+    },
     /// A column has another length than the times.
     #[error("column '{}' has {found} values, but there are {expected} times", shown(column))]
     #[diagnostic(help("give every column one value for each time"))]

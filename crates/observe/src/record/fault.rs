@@ -1,5 +1,7 @@
 //! What can be wrong with a row, and the rules by which it is found.
 
+use super::EmptyCells;
+use crate::Interpolation;
 use palmistry_io::foreign::shown;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -26,12 +28,23 @@ pub struct FaultRules {
     pub jitter: f64,
     /// The grid on which the readings of a column lie, in the column's unit; a column that is not here has none.
     pub resolution: BTreeMap<String, f64>,
+    /// What an empty cell means in a column; in one that is not here it is a fault.
+    pub empty: BTreeMap<String, EmptyCells>,
+    /// How columns go from one sample to the next.
+    pub interpolation: Interpolation,
 }
 
 impl Default for FaultRules {
     /// Stop at a fault; eight usual departures are a spike; even times, fine readings.
     fn default() -> Self {
-        FaultRules { on_fault: OnFault::Stop, spike: 8.0, jitter: 0.0, resolution: BTreeMap::new() }
+        FaultRules {
+            on_fault: OnFault::Stop,
+            spike: 8.0,
+            jitter: 0.0,
+            resolution: BTreeMap::new(),
+            empty: BTreeMap::new(),
+            interpolation: Interpolation::default(),
+        }
     }
 }
 

@@ -14,6 +14,7 @@ mod metadata;
 #[cfg(feature = "parquet")]
 mod parquet_file;
 mod rows;
+mod sparse;
 mod spike;
 mod stream;
 mod table;
@@ -27,6 +28,7 @@ pub use columns::{ColumnNames, ColumnSource};
 pub use error::RecordError;
 pub use fault::{Fault, FaultKind, FaultRules, OnFault};
 pub use rows::RecordRows;
+pub use sparse::{EmptyCells, SparseColumn};
 #[doc(hidden)]
 pub use stream::RowStream;
 pub(crate) use table::{Cell, Row};
@@ -73,6 +75,18 @@ pub struct RecordReading {
     pub faults: Vec<Fault>,
     /// Columns of the file that were not asked for and hold something other than numbers: not in the record.
     pub left_out: Vec<String>,
+    /// Columns with empty cells, and what became of these.
+    pub sparse: Vec<SparseColumn>,
+    /// Rows at the beginning and at the end of which a column that drives the model says nothing: not in the record.
+    pub outside: [usize; 2],
+}
+
+impl RecordReading {
+    /// Of a record with which nothing is wrong.
+    pub fn whole(record: Record) -> RecordReading {
+        let (faults, left_out, sparse) = (Vec::new(), Vec::new(), Vec::new());
+        RecordReading { record, faults, left_out, sparse, outside: [0, 0] }
+    }
 }
 
 impl Record {
@@ -127,11 +141,11 @@ impl Record {
     /// The file cannot be read, lacks a column or has no row, or a cell that is needed is no number.
     pub fn read(path: &Path, needed: &[&str]) -> Result<Record, RecordError> {
         let rows = RecordRows::read(path, needed)?;
-        let faults = check::unreadable(&rows);
+        let faults = check::unreadable(&rows, &FaultRules::default());
         if !faults.is_empty() {
             return Err(RecordError::Faulty { path: path.to_owned(), faults });
         }
-        Ok(rows.numbers(|_| true).0)
+        Ok(rows.numbers(|_| true, |_| false).0)
     }
 
     /// Reads a file, CSV or Parquet by its extension, and does with faulty rows what the rules say. In the record that

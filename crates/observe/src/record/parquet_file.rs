@@ -95,7 +95,7 @@ fn table(file: Bytes) -> Result<Table, String> {
         let mut columns: Vec<_> = columns.into_iter().map(Vec::into_iter).collect();
         for _ in 0..count {
             let cells = columns.iter_mut().map(|column| column.next().unwrap_or(Cell::Missing)).collect();
-            table.rows.push(Row { line: None, cells, surplus: 0 });
+            table.rows.push(Row { line: None, cells, surplus: 0, is_short: false });
         }
     }
     Ok(table)

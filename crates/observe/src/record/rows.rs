@@ -76,10 +76,13 @@ impl RecordRows {
             let (column, found) = (column.clone(), values.len());
             return Err(RecordError::Length { column, found, expected: length });
         }
+        // in a table without a text NaN is what an empty cell is in a file
+        let cell = |value: f64| if value.is_nan() { Cell::Missing } else { Cell::Number(value) };
         let row = |place: usize| Row {
             line: None,
-            cells: held.iter().map(|(_, values)| Cell::Number(values[place])).collect(),
+            cells: held.iter().map(|(_, values)| cell(values[place])).collect(),
             surplus: 0,
+            is_short: false,
         };
         let rows = (0..length).map(row).collect();
         let names = held.into_iter().map(|(name, _)| name).collect();
@@ -117,13 +120,19 @@ impl RecordRows {
     }
 
     /// The record of the rows to keep, numbered from one, and the names of the columns that hold something other than
-    /// numbers there.
-    pub(super) fn numbers(&self, keep: impl Fn(usize) -> bool) -> (Record, Vec<String>) {
+    /// numbers there. In columns that `may_lack` them an empty cell is NaN.
+    pub(super) fn numbers(
+        &self,
+        keep: impl Fn(usize) -> bool,
+        may_lack: impl Fn(&str) -> bool,
+    ) -> (Record, Vec<String>) {
         let kept: Vec<&Row> =
             (1..).zip(&self.rows).filter(|(row, _)| keep(*row)).map(|(_, row)| row).collect();
         let values = |column: usize| -> Option<Vec<f64>> {
+            let lacks = may_lack(&self.names[column]);
             let number = |row: &&Row| match row.cells.get(column) {
                 Some(Cell::Number(value)) => Some(*value),
+                Some(Cell::Missing) if lacks => Some(f64::NAN),
                 _ => None,
             };
             kept.iter().map(number).collect()

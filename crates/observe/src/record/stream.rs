@@ -6,7 +6,7 @@ use super::comma_separated::{BYTE_ORDER_MARK, COMMENT, cell, line_number, names}
 use super::rows::{judged, twice};
 use super::table::Row;
 use super::{
-    Cell, ColumnNames, Fault, FaultKind, FaultRules, OnFault, RecordError, RecordRows, STREAM,
+    Cell, ColumnNames, EmptyCells, Fault, FaultKind, FaultRules, OnFault, RecordError, RecordRows, STREAM,
     check::faults_of,
 };
 use csv::{ReaderBuilder, Trim};
@@ -51,7 +51,9 @@ pub struct RowStream {
 
 impl RowStream {
     /// A stream of rows that has read nothing yet.
-    pub fn new(columns: ColumnNames, needed: Vec<String>, rules: FaultRules) -> RowStream {
+    pub fn new(columns: ColumnNames, needed: Vec<String>, mut rules: FaultRules) -> RowStream {
+        // what lies between this value and the next is not known before that is there
+        rules.empty.retain(|_, empty| *empty == EmptyCells::NotMeasured);
         RowStream {
             path: Path::new(STREAM).to_owned(),
             columns,
@@ -136,7 +138,8 @@ impl RowStream {
             let cells = (0..columns).map(|i| cell(line.get(i).unwrap_or_default())).collect();
             let number = line.position().map(|at| first + line_number(bytes, at));
             let surplus = line.len().saturating_sub(columns);
-            self.rows.push(plan.row(Row { line: number, cells, surplus }));
+            let is_short = line.len() < columns;
+            self.rows.push(plan.row(Row { line: number, cells, surplus, is_short }));
         }
         self.lines += bytes.iter().filter(|byte| **byte == b'\n').count() as u64;
         Ok(())
@@ -191,8 +194,11 @@ impl RowStream {
             if own().any(Fault::takes_its_row) {
                 continue;
             }
-            let mut values =
-                needed.iter().map(|column| rows.rows[place].cells.get(*column).and_then(Cell::finite));
+            let value = |column: &usize| match rows.rows[place].cells.get(*column) {
+                Some(Cell::Missing) if self.rules.empty.contains_key(&rows.names[*column]) => Some(f64::NAN),
+                cell => cell.and_then(Cell::finite),
+            };
+            let mut values = needed.iter().map(value);
             let Some(time) = values.next().flatten() else { continue };
             // what was judged before is not looked at again
             if time <= self.last_time {

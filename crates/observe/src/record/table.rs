@@ -33,6 +33,8 @@ pub struct Row {
     pub cells: Vec<Cell>,
     /// How many cells stand after those.
     pub surplus: usize,
+    /// Whether it ends before the last column: such a row may be cut off.
+    pub is_short: bool,
 }
 
 /// What a format's reader finds.

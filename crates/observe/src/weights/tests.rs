@@ -34,7 +34,7 @@ fn errors_of_a_speed_add_up_in_the_place() {
     ] {
         task.errors.insert("u".to_owned(), errors);
         assert!(are_needed(&task));
-        let weights = Weights::of(&task, &[0.5], signals.times(), None, &signals).unwrap();
+        let weights = Weights::of(&task, (&[0.5], signals.times()), Vec::new(), None, &signals).unwrap();
         // C^-1 by what it makes of units
         let unit = DMatrix::identity(2, 2);
         let weighted = weights.weighted_slopes(&unit) / weights.unit;
@@ -105,7 +105,8 @@ fn the_recursion_is_the_full_matrix() {
     let (system, signals, question) = pushed(60);
     let task = erring(&system, &question, &signals);
     for window in [6..40, 0..60, 3..5] {
-        let weights = Weights::of(&task, &[0.4, -0.2], &signals.times()[window], None, &signals).unwrap();
+        let weights =
+            Weights::of(&task, (&[0.4, -0.2], &signals.times()[window]), Vec::new(), None, &signals).unwrap();
         let covariance = full_covariance(&weights);
         let n = covariance.nrows();
         assert!(weights.columns.runs[0].iter().any(|run| run.len() > 1));
@@ -152,7 +153,8 @@ fn weights_are_linear_in_the_samples() {
         let task = erring(&system, &question, &signals);
         let once = || {
             let begin = std::time::Instant::now();
-            let weights = Weights::of(&task, &[0.4, -0.2], signals.times(), None, &signals).unwrap();
+            let weights =
+                Weights::of(&task, (&[0.4, -0.2], signals.times()), Vec::new(), None, &signals).unwrap();
             let differences = DVector::from_element(2 * count, 0.01);
             let slopes = DMatrix::from_fn(2 * count, 5, |i, j| ((i * j) as f64).sin());
             let weighted = weights.weighted(&differences);

@@ -8,7 +8,8 @@ use crate::motion::recognition::{recognition_json, recognition_text};
 use crate::motion::reconstruction::{shape_json, shape_text};
 use crate::motion::studies::{studies_json, studies_text};
 use crate::motion::verdicts::{innovations_json, together_json, verdict_lines};
-use palmistry_observe::{Fault, Update, UpdateEnd};
+use palmistry_io::foreign::shown;
+use palmistry_observe::{EmptyCells, Fault, Interpolation, SparseColumn, Update, UpdateEnd};
 use palmistry_scenes::{Answer, Experiment, Guess, Studied, error};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -63,6 +64,36 @@ pub(super) fn noise_unit(observed: &Observed<'_>) -> String {
 /// The faults of a file, as lines.
 pub fn fault_lines(faults: &[Fault]) -> Vec<String> {
     faults.iter().map(ToString::to_string).collect()
+}
+
+/// In which columns of a file something was not measured, as lines.
+pub(super) fn sparse_lines(experiment: &Experiment) -> Vec<String> {
+    let rows = experiment.signals.times().len() + experiment.outside.iter().sum::<usize>();
+    let column = |own: &SparseColumn| {
+        let what = match own.empty {
+            EmptyCells::NotMeasured => "compared there".to_owned(),
+            EmptyCells::Interpolated => {
+                format!(
+                    "interpolated between ({})",
+                    interpolation_in_words(experiment.scene.data.interpolation)
+                )
+            }
+        };
+        format!("{} is measured in {} of {rows} rows, and {what}", shown(&own.column), own.measured)
+    };
+    let [first, last] = experiment.outside;
+    let outside = (first + last > 0).then(|| {
+        format!("{first} rows at the beginning and {last} at the end are left out: a column that drives the model is empty up to there")
+    });
+    experiment.sparse.iter().map(column).chain(outside).collect()
+}
+
+fn interpolation_in_words(interpolation: Interpolation) -> &'static str {
+    match interpolation {
+        Interpolation::Polynomial => "polynomials",
+        Interpolation::Linear => "straight lines",
+        Interpolation::Hold => "held values",
+    }
 }
 
 /// States with what was recovered, what is true, the error and the bound, by name.
@@ -220,6 +251,14 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
     if experiment.origin != 0.0 {
         found["time_origin"] = json!(experiment.origin);
     }
+    if !experiment.sparse.is_empty() {
+        let column = |own: &SparseColumn| {
+            let is_filled = own.empty == EmptyCells::Interpolated;
+            json!({ "column": own.column, "measured": own.measured, "interpolated": is_filled })
+        };
+        found["sparse"] = json!(experiment.sparse.iter().map(column).collect::<Vec<_>>());
+        found["rows_left_out"] = json!({ "beginning": experiment.outside[0], "end": experiment.outside[1] });
+    }
     if let Some(simulation) = &experiment.simulation {
         found["simulation"] = json!({
             "ended": simulation.ended().to_string(),
@@ -268,7 +307,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
     if experiment.origin != 0.0 {
         let _ = writeln!(text, "times are counted from the first sample, at {} s", experiment.origin);
     }
-    for line in fault_lines(&experiment.faults) {
+    for line in fault_lines(&experiment.faults).into_iter().chain(sparse_lines(experiment)) {
         let _ = writeln!(text, "  {line}");
     }
     text.push_str(units_in_words(experiment));

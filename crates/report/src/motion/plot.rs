@@ -186,7 +186,10 @@ pub(super) fn sensor_errors(observed: &Observed<'_>) -> Vec<String> {
     let Some((names, sigma)) = outputs(observed) else { return Vec::new() };
     let surprises = |answer: &Answer, output: usize| -> Vec<(f64, f64)> {
         let moments = answer.track.estimates.iter();
-        moments.filter_map(|moment| Some((moment.time, *moment.residual.get(output)?))).collect()
+        let measured = |value: &&f64| !value.is_nan();
+        moments
+            .filter_map(|moment| Some((moment.time, *moment.residual.get(output).filter(measured)?)))
+            .collect()
     };
     let limits = limits(observed);
     let mut pictures = Vec::new();

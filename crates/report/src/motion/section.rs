@@ -1,6 +1,6 @@
 //! An experiment as a part of a page: pictures first, then what each observer found, in tables and in words.
 
-use crate::motion::answers::{Observed, fault_lines, noise_unit};
+use crate::motion::answers::{Observed, fault_lines, noise_unit, sparse_lines};
 use crate::motion::frames::{frames, recovered_outline};
 use crate::motion::outline_section::shape_section;
 use crate::motion::plot::{errors, sensor_errors, state};
@@ -219,6 +219,11 @@ pub(super) fn faults(observed: &Observed<'_>) -> Markup {
             }
         } @else if observed.experiment.simulated().is_none() {
             p { "No row of the file is faulty." }
+        }
+        @let sparse = sparse_lines(observed.experiment);
+        @if !sparse.is_empty() {
+            p { "Not each row measures all:" }
+            ul { @for line in &sparse { li { (line) } } }
         }
     }
 }

@@ -127,7 +127,10 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
     let SensorKeys { sensor, channels } = keys.sensor;
     checks.sensor(&sensor)?;
     checks.channels(&channels, keys.data.record.is_some())?;
-    checks.positive("data.spike", keys.data.spike, "usual departures")?;
+    // nothing is a spike that would have to be infinitely far off
+    if keys.data.spike != f64::INFINITY {
+        checks.positive("data.spike", keys.data.spike, "usual departures")?;
+    }
     let columns = checks.columns(keys.columns)?;
     let palm_forms = checks.forms(keys.palms.as_ref().and_then(|palms| palms.radii))?;
     let has_palms = keys.body.is_some() || keys.palms.is_some();

@@ -135,6 +135,8 @@ impl Scene {
             on_fault: self.data.on_fault,
             spike: self.data.spike,
             jitter: self.sensor.jitter,
+            empty: BTreeMap::new(),
+            interpolation: self.data.interpolation,
             resolution: ["s1", "s2"]
                 .map(|column| (column.to_owned(), resolution))
                 .into_iter()

@@ -2,8 +2,8 @@
 
 use super::simulated::LibraryBody;
 use palmistry_observe::{
-    HighGain, Integration, Kalman, Loss, MovingWindow, MultipleShooting, Observer, OnFault, Shooting,
-    Unscented, WhenBlind, WindowSearch,
+    HighGain, Integration, Interpolation, Kalman, Loss, MovingWindow, MultipleShooting, Observer, OnFault,
+    Shooting, Unscented, WhenBlind, WindowSearch,
 };
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
@@ -54,13 +54,15 @@ pub struct Data {
     pub record: Option<PathBuf>,
     /// `on_fault`: `"stop"`, unless `"skip"` is given.
     pub on_fault: OnFault,
-    /// `spike`: a value this many usual departures off what its neighbours foretell is a spike; 8 unless given.
+    /// `spike`: a value this many usual departures off what its neighbours foretell is a spike; 8 unless given, and none is with `inf`.
     pub spike: f64,
+    /// `interpolation`: how columns that drive the model go from one sample to the next: `"polynomial"`, unless `"linear"` or `"hold"` is given.
+    pub interpolation: Interpolation,
 }
 
 impl Default for Data {
     fn default() -> Self {
-        Data { record: None, on_fault: OnFault::Stop, spike: 8.0 }
+        Data { record: None, on_fault: OnFault::Stop, spike: 8.0, interpolation: Interpolation::default() }
     }
 }
 

@@ -155,7 +155,7 @@ fn every_key_arrives_where_it_belongs() {
         [Course { start: 0.8, rate: 0.5, swings }, Course { start: 1.6, rate: 0.0, swings: Vec::new() }];
     assert_eq!(*palms, Palms { inertia: [0.5, 0.4], drive: Drive::Prescribed(prescribed), friction: 0.0 });
     assert_eq!(scene.sensor, Sensor { noise: 1e-5, resolution: 1e-4, jitter: 1e-3 });
-    assert_eq!(scene.data, Data { record: None, on_fault: OnFault::Skip, spike: 6.0 });
+    assert_eq!(scene.data, Data { on_fault: OnFault::Skip, spike: 6.0, ..Data::default() });
     let value = |pairs: &[(&str, f64)]| pairs.iter().map(|(name, v)| ((*name).to_owned(), *v)).collect();
     let observer = ObserverSettings {
         methods: vec![

@@ -130,7 +130,7 @@ impl Arriving<'_> {
         let record =
             Record::new(self.buffer.times[rows.clone()].to_vec(), names.into_iter().zip(columns).collect());
         let record = record.map_err(|error| unusable(&ground.scene, &error))?;
-        let reading = RecordReading { record, faults: Vec::new(), left_out: Vec::new() };
+        let reading = RecordReading::whole(record);
         Experiment::with_readings(ground, reading, None, steady)
     }
 

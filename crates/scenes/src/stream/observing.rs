@@ -160,11 +160,12 @@ impl<'a> Observing<'a> {
             (name.clone(), values)
         };
         let columns = self.names.iter().enumerate().map(column).collect();
-        let signals = Signals::new(times, columns).map_err(|error| {
+        let signals = Signals::sparse(times, columns).map_err(|error| {
             self.experiment.scene.error_at("data", error.to_string(), "these measurements", "")
         })?;
         let first = shown - from;
-        Ok(signals.showing(first..first + again + count))
+        let interpolation = self.experiment.scene.data.interpolation;
+        Ok(signals.interpolated(interpolation).showing(first..first + again + count))
     }
 
     fn answer(&mut self, buffer: &Buffer, count: usize) -> Result<Vec<StreamAnswer>, SceneError> {
