@@ -32,6 +32,8 @@ def observe(
     steps: int = 50,
     loss: str | None = None,
     on_fault: str = "stop",
+    spike: float | None = None,
+    interpolation: str | None = None,
 ) -> Observation:
     """Runs observers: of a scene, a TOML file of any kind, or of a system on measurements.
 
@@ -42,7 +44,8 @@ def observe(
     noise: the standard deviation of the outputs' errors, in their units, one for all or by output; estimated from the residuals unless given. unknowns: what is estimated, all unknowns of the system
     unless given. known: values of what is neither estimated nor measured. guess: where the search begins; of what is not named in the middle of its range in the sample box. bounds: between what some of it lies.
     method: 'multiple-shooting' (unless a guess is given), 'trust-region', 'newton', 'kalman', 'unscented', 'high-gain' or 'integration', or several. window: samples of one window, all unless given.
-    steps: of the search in each window. loss: 'huber' or another of the book's; squares unless given. on_fault: 'stop' or 'skip' rows that are faulty.
+    steps: of the search in each window. loss: 'huber' or another of the book's; squares unless given. on_fault: 'stop' or 'skip' rows that are faulty; spike: how many usual departures make a value one, 8 unless
+    given, inf for none. A NaN of an output says that it was not measured then, and is no fault; what drives the model goes between its samples by interpolation: 'polynomial' unless 'linear' or 'hold' is given.
 
     >>> import numpy, palmistry
     >>> decay = palmistry.System.parse('''
@@ -95,6 +98,8 @@ def observe(
         lines += ["[sensor]", f"noise = {_toml(float(noise))}"]
     # a scene has to say that its measurements come from elsewhere; that file is not looked for
     lines += ["[data]", 'record = "the measurements.csv"', f"on_fault = {_toml(on_fault)}"]
+    lines += [] if spike is None else [f"spike = {_toml(float(spike))}"]
+    lines += [] if interpolation is None else [f"interpolation = {_toml(interpolation)}"]
     renamed = dict(columns or {})
     if path is not None and time != "time":
         renamed["time"] = time
@@ -173,7 +178,7 @@ def _measurements(data: Any, time: str) -> tuple[str | None, list[tuple[str, Any
     if isinstance(data, (str, os.PathLike)):
         return os.fspath(data), []
     if hasattr(data, "columns") and hasattr(data, "index"):  # a DataFrame
-        held = {str(name): data[name].to_numpy() for name in data.columns}
+        held = {str(name): _numbers(data[name]) for name in data.columns}
         if time not in held:
             held[time] = data.index.to_numpy()
     elif isinstance(data, Mapping):
@@ -195,6 +200,13 @@ def _measurements(data: Any, time: str) -> tuple[str | None, list[tuple[str, Any
     if not any(name == "time" for name, _ in found):
         raise Error(f"the column '{time}' does not hold numbers", "times are seconds, or dates of numpy")
     return None, found
+
+
+def _numbers(series: Any) -> Any:
+    """A column of a DataFrame; what is not there is NaN, also where the column's type is one of pandas's own."""
+    if getattr(series.dtype, "kind", "O") in "fiu":
+        return series.to_numpy(dtype="float64", na_value=float("nan"))
+    return series.to_numpy()
 
 
 def _rows(path: str | None) -> int:

@@ -329,7 +329,10 @@ class Measurements(unittest.TestCase):
             (lambda: palmistry.observe(self.system, {"phi": self.phi}), "no column 'time'"),
             (lambda: palmistry.observe(self.system, {"time": self.times, "angle": self.phi}), "'phi'"),
             (lambda: palmistry.observe(self.system, {"time": self.times, "phi": self.phi[:-1]}), "100 values|101 times|has 10"),
-            (lambda: palmistry.observe(self.system, {"time": self.times, "phi": numpy.where(self.times == 1.0, numpy.nan, self.phi)}), "fault"),
+            (lambda: palmistry.observe(self.system, {"time": self.times, "phi": numpy.where(self.times == 1.0, numpy.inf, self.phi)}), "fault"),
+            (lambda: palmistry.observe(self.system, {"time": numpy.where(self.times == 1.0, numpy.nan, self.times), "phi": self.phi}), "fault"),
+            (lambda: palmistry.observe(self.system, {"time": self.times, "phi": numpy.full(101, numpy.nan)}), "nothing was measured"),
+            (lambda: palmistry.observe(self.system, good, interpolation="magic"), "magic|interpolation"),
             (lambda: palmistry.observe(self.system, good, method="magic"), "magic"),
             (lambda: palmistry.observe(self.system, good, unknowns=["psi"]), "psi"),
             (lambda: palmistry.observe(self.system, 3.0), "no float"),
@@ -340,8 +343,31 @@ class Measurements(unittest.TestCase):
         for ask, said in cases:
             with self.assertRaisesRegex(Error, said):
                 ask()
-        skipped = palmistry.observe(self.system, {"time": self.times, "phi": numpy.where(self.times == 1.0, numpy.nan, self.phi)}, noise=1e-3, on_fault="skip")
+        skipped = palmistry.observe(self.system, {"time": self.times, "phi": numpy.where(self.times == 1.0, numpy.inf, self.phi)}, noise=1e-3, on_fault="skip")
         self.assertTrue(skipped.fits)
+
+    def test_what_was_not_measured_is_no_fault(self):
+        sparse = numpy.where(numpy.arange(101) % 3 == 0, self.phi, numpy.nan)
+        found = palmistry.observe(self.system, {"time": self.times, "phi": sparse}, noise=1e-3, times=False)
+        self.assertTrue(found.fits)
+        self.assertEqual(found.json["sparse"], [{"column": "phi", "measured": 34, "interpolated": False}])
+        kept = ~numpy.isnan(sparse)
+        alone = palmistry.observe(self.system, {"time": self.times[kept], "phi": sparse[kept]}, noise=1e-3, times=False)
+        off = (found.estimates["estimate"][: 4] - alone.estimates["estimate"][: 4]) / alone.estimates["deviation"]
+        # the last two rows measure nothing, and only they are integrated farther
+        self.assertLess(numpy.abs(off).max(), 1e-4)
+        self.assertEqual(int(numpy.isnan(found.residuals["phi"]).sum()), 67)
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "record.csv")
+            with open(file, "w", encoding="utf-8") as written:
+                written.write("time,phi\n" + "".join(f"{t!r},{'' if p != p else repr(p)}\n" for t, p in zip(self.times.tolist(), sparse.tolist())))
+            self.assertEqual(palmistry.observe(self.system, file, noise=1e-3, times=False).estimates["estimate"].tolist(), found.estimates["estimate"].tolist())
+        try:
+            import pandas
+        except ImportError:
+            return
+        frame = pandas.DataFrame({"phi": pandas.array(sparse, dtype="Float64")}, index=self.times)
+        self.assertEqual(palmistry.observe(self.system, frame, noise=1e-3, times=False).estimates["estimate"].tolist(), found.estimates["estimate"].tolist())
 
     def test_ctrl_c_is_heeded(self):
         times = numpy.linspace(0, 100, 4001)

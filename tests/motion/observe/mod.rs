@@ -27,6 +27,7 @@ mod recovered;
 mod refused;
 mod robot;
 mod shape;
+mod sparse;
 mod stream;
 mod switch;
 mod systems;

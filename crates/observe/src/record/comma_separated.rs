@@ -112,10 +112,10 @@ pub(super) fn write(record: &Record, file: &mut dyn Write) -> std::io::Result<()
     let header = std::iter::once(record.first_name()).chain(record.names.iter().map(String::as_str));
     writer.write_record(header).map_err(io_error)?;
     for (row, time) in record.times.iter().enumerate() {
-        let values = std::iter::once(*time).chain(record.columns.iter().map(|column| column[row]));
         // what was not measured is an empty cell
         let cell = |value: f64| if value.is_nan() { String::new() } else { format!("{value:?}") };
-        writer.write_record(values.map(cell)).map_err(io_error)?;
+        let cells = record.columns.iter().map(|column| cell(column[row]));
+        writer.write_record(std::iter::once(format!("{time:?}")).chain(cells)).map_err(io_error)?;
     }
     writer.flush()
 }

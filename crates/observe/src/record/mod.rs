@@ -134,18 +134,21 @@ impl Record {
     }
 
     /// Reads a file of numbers, CSV or Parquet by its extension (`-` is all of standard input, as CSV), and judges no value: times may stand in any order,
-    /// and a cell that says `NaN` or `inf` is a number here. `needed` are the columns that must be there beside the
+    /// and a cell that says `NaN` or `inf` is a number here, one that is empty NaN. `needed` are the columns that must be there beside the
     /// time; none means all. Other columns are kept where they are whole.
     ///
     /// # Errors
     /// The file cannot be read, lacks a column or has no row, or a cell that is needed is no number.
     pub fn read(path: &Path, needed: &[&str]) -> Result<Record, RecordError> {
         let rows = RecordRows::read(path, needed)?;
-        let faults = check::unreadable(&rows, &FaultRules::default());
+        let columns = rows.needed[1..].iter().map(|column| rows.names[*column].clone());
+        let empty = columns.map(|name| (name, EmptyCells::NotMeasured)).collect();
+        let rules = FaultRules { empty, ..FaultRules::default() };
+        let faults = check::unreadable(&rows, &rules);
         if !faults.is_empty() {
             return Err(RecordError::Faulty { path: path.to_owned(), faults });
         }
-        Ok(rows.numbers(|_| true, |_| false).0)
+        Ok(rows.numbers(|_| true, |name| rules.empty.contains_key(name)).0)
     }
 
     /// Reads a file, CSV or Parquet by its extension, and does with faulty rows what the rules say. In the record that
@@ -174,8 +177,8 @@ impl Record {
         RecordRows::read_named(path, needed, names)?.settle(rules)
     }
 
-    /// Writes the record, CSV or Parquet by the extension, so that it is read back bit for bit (in CSV but for the
-    /// payload of a NaN). A file is whole or not there; a device or a pipe is written into, and `-` is standard output, as CSV.
+    /// Writes the record, CSV or Parquet by the extension, so that it is read back bit for bit, but for the payload of a NaN: that is an empty cell, in which
+    /// nothing was measured. A file is whole or not there; a device or a pipe is written into, and `-` is standard output, as CSV.
     ///
     /// # Errors
     /// The extension is another, or the file cannot be written.

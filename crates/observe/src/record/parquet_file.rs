@@ -179,19 +179,21 @@ fn values<T: DataType>(
     }
 }
 
-/// Writes a record: one group of rows, doubles as they are.
+/// Writes a record: one group of rows, doubles as they are, and none where nothing was measured.
 pub(super) fn write(record: &Record, file: &mut (dyn Write + Send)) -> std::io::Result<()> {
     store(record, file).map_err(std::io::Error::other)
 }
 
 fn store(record: &Record, file: &mut (dyn Write + Send)) -> Result<(), ParquetError> {
-    let field = |name: &str| {
+    let is_sparse = |values: &[f64]| values.iter().any(|value| value.is_nan());
+    let field = |name: &str, repetition: Repetition| {
         let builder = Type::primitive_type_builder(name, Physical::DOUBLE);
-        builder.with_repetition(Repetition::REQUIRED).build().map(Arc::new)
+        builder.with_repetition(repetition).build().map(Arc::new)
     };
-    let mut fields = vec![field(record.first_name())?];
-    for name in &record.names {
-        fields.push(field(name)?);
+    let mut fields = vec![field(record.first_name(), Repetition::REQUIRED)?];
+    for (name, values) in record.names.iter().zip(&record.columns) {
+        let repetition = if is_sparse(values) { Repetition::OPTIONAL } else { Repetition::REQUIRED };
+        fields.push(field(name, repetition)?);
     }
     let schema = Arc::new(Type::group_type_builder("record").with_fields(fields).build()?);
     let properties = WriterProperties::builder()
@@ -200,9 +202,16 @@ fn store(record: &Record, file: &mut (dyn Write + Send)) -> Result<(), ParquetEr
         .build();
     let mut writer = SerializedFileWriter::new(file, schema, Arc::new(properties))?;
     let mut group = writer.next_row_group()?;
-    for values in std::iter::once(&record.times).chain(&record.columns) {
+    for (place, values) in std::iter::once(&record.times).chain(&record.columns).enumerate() {
         let Some(mut column) = group.next_column()? else { break };
-        column.typed::<DoubleType>().write_batch(values, None, None)?;
+        let writer = column.typed::<DoubleType>();
+        if place > 0 && is_sparse(values) {
+            let levels: Vec<i16> = values.iter().map(|value| i16::from(!value.is_nan())).collect();
+            let measured: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
+            writer.write_batch(&measured, Some(&levels), None)?;
+        } else {
+            writer.write_batch(values, None, None)?;
+        }
         column.close()?;
     }
     group.close()?;

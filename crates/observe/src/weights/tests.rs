@@ -167,3 +167,40 @@ fn weights_are_linear_in_the_samples() {
     let (few, many) = (seconds(250), seconds(1000));
     assert!(many < 10.0 * few, "{few} s and {many} s");
 }
+
+/// Of what was not measured nothing is weighed: the recursion is that of the full matrix without its rows and columns.
+#[test]
+fn what_was_not_measured_is_as_if_it_were_not_there() {
+    let (system, signals, question) = pushed(60);
+    let task = erring(&system, &question, &signals);
+    let window = &signals.times()[5..45];
+    let (whole, n) = (full_covariance(&of_window(&task, window, Vec::new())), 80);
+    for every in [2, 3, 7] {
+        let unmeasured: Vec<usize> = (0..n).filter(|place| place % every == 1).collect();
+        let kept: Vec<usize> = (0..n).filter(|place| place % every != 1).collect();
+        let weights = of_window(&task, window, unmeasured.clone());
+        let covariance = whole.select_rows(&kept).select_columns(&kept);
+        let root = nalgebra::Cholesky::new(covariance.clone()).unwrap().unpack();
+        let mut differences = DVector::from_fn(n, |i, _| ((7 * i % 13) as f64).sin());
+        unmeasured.iter().for_each(|place| differences[*place] = 0.0);
+        let white = root.solve_lower_triangular(&differences.select_rows(&kept)).unwrap();
+        let weighted = weights.weighted(&differences);
+        let off = |a: &DVector<f64>, b: &DVector<f64>| (a.select_rows(&kept) - b).amax() / b.amax();
+        assert!(
+            off(&weighted, &(&white * 0.02)) < 1e-9 && unmeasured.iter().all(|place| weighted[*place] == 0.0)
+        );
+        let pulled = root.transpose().solve_upper_triangular(&white).unwrap();
+        assert!(off(&weights.back(&weighted), &(&pulled * 4e-4)) < 1e-9);
+        let coloured = weights.factor.coloured(&weights.recursion(), &(&weighted / 0.02));
+        assert!(off(&coloured, &differences.select_rows(&kept)) < 1e-9);
+        let (diagonal, _) = weights.factor.norms(&weights.recursion());
+        assert!(off(&diagonal, &covariance.try_inverse().unwrap().diagonal()) < 1e-9);
+        let slopes = DMatrix::zeros(n, 2);
+        let fit = weights.fit(&weighted, &slopes, 1e-9, kept.len(), (Loss::Squares, 1e-3));
+        assert!((fit.chi_square / white.norm_squared() - 1.0).abs() < 1e-9 && fit.readings == kept.len());
+    }
+}
+
+fn of_window(task: &Task<'_>, times: &[f64], unmeasured: Vec<usize>) -> Weights {
+    Weights::of(task, (&[0.4, -0.2], times), unmeasured, None, task.signals).unwrap()
+}
