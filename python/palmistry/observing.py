@@ -43,7 +43,7 @@ def observe(
     the names of the model's outputs and inputs, or `columns` says what they are called: {"phi": "angle_deg"}. time: the column of times (of a DataFrame without one its index). inputs: by input field the column that drives it.
     noise: the standard deviation of the outputs' errors, in their units, one for all or by output; estimated from the residuals unless given. unknowns: what is estimated, all unknowns of the system
     unless given. known: values of what is neither estimated nor measured. guess: where the search begins; of what is not named in the middle of its range in the sample box. bounds: between what some of it lies.
-    method: 'multiple-shooting' (unless a guess is given), 'trust-region', 'newton', 'kalman', 'unscented', 'high-gain' or 'integration', or several. window: samples of one window, all unless given.
+    method: 'multiple-shooting' (unless a guess is given), 'trust-region', 'newton', 'kalman', 'unscented', 'smoother', 'high-gain' or 'integration', or several. window: samples of one window, all unless given.
     steps: of the search in each window. loss: 'huber' or another of the book's; squares unless given. on_fault: 'stop' or 'skip' rows that are faulty; spike: how many usual departures make a value one, 8 unless
     given, inf for none. A NaN of an output says that it was not measured then, and is no fault; what drives the model goes between its samples by interpolation: 'polynomial' unless 'linear' or 'hold' is given.
 

@@ -6,7 +6,7 @@ use std::path::Path;
 const RIGHT: &str = "system \"s\"\nstate phi, omega\nparam k = 2\nangle phi\ndrift f\n  phi' = omega\n  omega' = -k*sin(phi)\noutput phi\n";
 
 /// A text of the right file, what stands in its place, and words of the advice.
-const MISTAKES: [(&str, &str, &str); 46] = [
+const MISTAKES: [(&str, &str, &str); 51] = [
     ("-k*sin", "-k sin", "a product is written with '*', as in k*sin"),
     ("-k*sin", "-2 sin", "a product is written with '*', as in 2*sin"),
     ("-k*sin", "-2k*sin", "a product is written with '*'"),
@@ -53,6 +53,11 @@ const MISTAKES: [(&str, &str, &str); 46] = [
     ("output phi", "output phi\nclaim a: k \u{2264} 2", "write '<='"),
     ("output phi", "output phi\nclaim a: rank = infinty", "perhaps you meant 'infinity'"),
     ("output phi", "outptu phi", "perhaps you meant 'output'"),
+    ("\"s\"", "s", "a title stands in quotation marks, as in system \"s\""),
+    ("drift f\n", "known u(t)\n", "write 'drift f' on the line before phi'"),
+    ("output phi", "output y = phi", "let y = ..., and write output y"),
+    ("output phi", "output phi\nclaim rank = 2", "as in claim a: rank = ..."),
+    ("output phi", "output phi\nsample omega in -1..1", "a range has square brackets"),
 ];
 
 #[test]

@@ -1,6 +1,7 @@
 //! The extended Kalman filter, the field's usual choice.
 
 use super::filtered::{Filtered, Innovation, measured};
+use super::smoother::{Passed, Predicted};
 use super::task::{Observer, Task};
 use super::track::Track;
 use super::{Learned, Lost, Order};
@@ -33,6 +34,13 @@ impl Default for Kalman {
 
 impl Observer for Kalman {
     fn observe(&self, task: &Task<'_>) -> Track {
+        self.pass(task, None)
+    }
+}
+
+impl Kalman {
+    /// Goes through all samples; whoever goes back has what was `passed`, one a sample.
+    pub(super) fn pass(&self, task: &Task<'_>, mut passed: Option<&mut Vec<Passed>>) -> Track {
         let times = task.signals.times();
         let n = task.full.states.len();
         if let Some(why) = task.refuses_implicit() {
@@ -49,18 +57,25 @@ impl Observer for Kalman {
             (state, covariance) = (known, spread);
         }
         so_far.believe(times[0], state.as_slice(), &covariance.diagonal(), Vec::new());
+        let mut keep = |state: &DVector<f64>, covariance: &DMatrix<f64>, predicted: Option<Predicted>| {
+            if let Some(passed) = passed.as_deref_mut() {
+                passed.push(Passed { state: state.clone(), covariance: covariance.clone(), predicted });
+            }
+        };
+        keep(&state, &covariance, None);
         for row in 1..times.len() {
             if task.interrupted() {
                 break;
             }
             let step = times[row] - times[row - 1];
-            match predict(task, &state, &times[row - 1..=row]) {
+            let predicted = match predict(task, &state, &times[row - 1..=row]) {
                 Ok((there, flow)) => {
                     state = there;
                     covariance = &flow * covariance * flow.transpose();
                     for i in 0..n {
                         covariance[(i, i)] += drive(i) * step;
                     }
+                    Predicted { flow, state: state.clone(), covariance: covariance.clone() }
                 }
                 Err(lost) => {
                     so_far.track.hold(&lost);
@@ -69,15 +84,17 @@ impl Observer for Kalman {
                     // what is held while the model is lost is known no longer
                     let unknown = DVector::from_element(n, f64::INFINITY);
                     so_far.believe(times[row], state.as_slice(), &unknown, Vec::new());
+                    keep(&state, &covariance, None);
                     continue;
                 }
-            }
+            };
             let noise = so_far.reading_variances();
             let innovation = correct(task, &mut state, &mut covariance, &noise, row);
             innovation.iter().for_each(|own| so_far.compare_white(own));
             so_far.hold(times[row], &mut state, &covariance);
             let residual = innovation.map(|own| own.of_all(noise.len())).unwrap_or_default();
             so_far.believe(times[row], state.as_slice(), &covariance.diagonal(), residual);
+            keep(&state, &covariance, Some(predicted));
         }
         let mut track = so_far.end();
         track.hand_on(Learned::of_filter(task, &state, &covariance, &covariance.diagonal()));

@@ -47,6 +47,7 @@ mod restarts;
 mod seam;
 mod sensitivity;
 mod signal;
+mod smoother;
 mod spread;
 mod starts;
 mod stiff_joints;
@@ -95,6 +96,7 @@ pub use record::{
 pub use record::{RecordRows, RowStream, STREAM, TIME, faults_of};
 pub use response::{Response, ResponseError, ResponseQuestion, response};
 pub use signal::{Interpolation, SignalError, Signals};
+pub use smoother::Smoother;
 pub use suspect::{Suspect, SuspectKind};
 pub use task::{EstimateQuestion, Observer, Task};
 pub use together::{Innovations, Seam, Tested, Together};

@@ -183,6 +183,81 @@ fn the_test_of_fit_is_as_sharp_as_it_says() {
     assert!(least > 1e-4 && (1..=14).contains(&small), "{least} {small}");
 }
 
+/// What a table holds under some names, row by row.
+fn table<const N: usize>(path: &Path, names: [&str; N]) -> Vec<[f64; N]> {
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = lines.next().unwrap();
+    let places = names.map(|name| header.iter().position(|own| *own == name).unwrap());
+    lines.map(|cells| places.map(|place| cells[place].parse().unwrap())).collect()
+}
+
+/// A smoother of linear equations is the least squares of all states together: one matrix of all samples, with what was believed before, how the state goes from each to the next, and
+/// what was measured, each weighed by its covariance. With a noise that drives the equations and without, and where much was not measured.
+#[test]
+fn a_smoother_is_least_squares_of_all_samples_together() {
+    const ROWS: usize = 50;
+    for (drive, every) in [(0.0, 1), (0.3, 1), (0.3, 4)] {
+        let rows = spring(7, ROWS, |row, output| (row + output) % every == 0);
+        let folder = folder();
+        let scene = scene(&folder, &csv("x,v", &timed(&rows)), "\"smoother\", \"kalman\"", NOISE);
+        let text = std::fs::read_to_string(&scene).unwrap();
+        let text = text
+            .replace("kalman = { process_noise = 0 }", &format!("kalman = {{ process_noise = {drive:?} }}"));
+        let scene = write(&folder, "scene.toml", text.replace("whole = true\n", ""));
+        let track = folder.path().join("track.csv");
+        let (output, json) = observe(&scene, &["--track", track.to_str().unwrap()]);
+        assert!(output.status.code().is_some_and(|code| code < 2), "{json}");
+        let (sin, cos) = (2.0 * STEP).sin_cos();
+        let flow = DMatrix::from_row_slice(2, 2, &[cos, sin / 2.0, -2.0 * sin, cos]);
+        // relations, each `slopes * states = value` with a deviation; sizes are those of the guess
+        let (guess, mut relations) = ([0.9, -0.4], Vec::new());
+        let mut relate = |slopes: &[(usize, f64)], value: f64, deviation: f64| {
+            let mut row = DVector::zeros(2 * ROWS);
+            slopes.iter().for_each(|(place, slope)| row[*place] += slope / deviation);
+            relations.push((row, value / deviation));
+        };
+        for (i, believed) in guess.iter().enumerate() {
+            relate(&[(i, 1.0)], *believed, 0.5 * believed.abs());
+        }
+        for row in 1..ROWS {
+            for i in 0..2 {
+                let (from, to) = (2 * (row - 1), 2 * row);
+                // without noise the equations hold to far below what is compared
+                let deviation = (drive * guess[i].abs() * STEP.sqrt()).max(1e-8);
+                relate(&[(to + i, 1.0), (from, -flow[(i, 0)]), (from + 1, -flow[(i, 1)])], 0.0, deviation);
+                // a filter begins behind the first sample
+                if let Some(value) = rows[row][i] {
+                    relate(&[(to + i, 1.0)], value, [0.02, 0.05][i]);
+                }
+            }
+        }
+        let slopes = DMatrix::from_fn(relations.len(), 2 * ROWS, |i, j| relations[i].0[j]);
+        let values = DVector::from_fn(relations.len(), |i, _| relations[i].1);
+        let qr = slopes.qr();
+        let inverse = qr.r().try_inverse().unwrap();
+        let expected = &inverse * qr.q().tr_mul(&values);
+        let told: Vec<[f64; 5]> = table(&track, ["time", "x", "x_bound", "v", "v_bound"]);
+        assert_eq!(told.len(), ROWS);
+        for (row, own) in told.iter().enumerate() {
+            for i in 0..2 {
+                let ([value, deviation], bound) =
+                    ([own[1 + 2 * i], own[2 + 2 * i]], inverse.row(2 * row + i).norm());
+                let off = (value - expected[2 * row + i]).abs();
+                assert!(off < 1e-5 * bound.max(1e-3), "{drive} {row} {i}: {value} {}", expected[2 * row + i]);
+                assert!((deviation / bound - 1.0).abs() < 1e-5, "{drive} {row} {i}: {deviation} {bound}");
+            }
+        }
+        for (place, row) in [("begin", 0), ("end", ROWS - 1)] {
+            let states = format!("/observers/0/{place}/states");
+            assert_eq!(number(&json, &format!("{states}/v/recovered")), told[row][3]);
+        }
+        // a filter knows as much at the end, and less before
+        assert_eq!(json["observers"][0]["end"], json["observers"][1]["end"]);
+        assert!(json["observers"][1].get("begin").is_none());
+    }
+}
+
 const PUSHED: &str = "system \"A mass that is pushed\" state x, v param u drift f x' = v v' = u output x sample x in [-2, 2] v in [-2, 2] u in [-1, 1]";
 
 /// What drives the model goes between its samples as it is told: a force that is held, measured each fourth row from the second on. The mass is where the integral by hand has it, and
@@ -276,13 +351,6 @@ fn a_robot_s_log_tells_where_it_was() {
     assert!((1.0 / state("w", "recovered") + 0.159).abs() < 0.003, "{}", state("w", "recovered"));
     assert!((0.05..0.16).contains(&state("c", "recovered")));
     assert!(number(&json, "/observers/0/updates/0/fit/probability") < 1e-3);
-    let table = |path: &Path, names: [&str; 3]| -> Vec<[f64; 3]> {
-        let text = std::fs::read_to_string(path).unwrap();
-        let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
-        let header = lines.next().unwrap();
-        let places = names.map(|name| header.iter().position(|own| *own == name).unwrap());
-        lines.map(|cells| places.map(|place| cells[place].parse().unwrap())).collect()
-    };
     let names = ["time", "x", "y"];
     let (track, truth) = (table(&track, names), table(&home.join("truth.csv"), names));
     let square = |[own, other]: [&[f64; 3]; 2]| {

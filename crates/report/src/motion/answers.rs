@@ -9,8 +9,8 @@ use crate::motion::reconstruction::{shape_json, shape_text};
 use crate::motion::studies::{studies_json, studies_text};
 use crate::motion::verdicts::{innovations_json, together_json, verdict_lines};
 use palmistry_io::foreign::shown;
-use palmistry_observe::{EmptyCells, Fault, Interpolation, SparseColumn, Update, UpdateEnd};
-use palmistry_scenes::{Answer, Experiment, Guess, Studied, error};
+use palmistry_observe::{EmptyCells, Fault, Interpolation, SampleEstimate, SparseColumn, Update, UpdateEnd};
+use palmistry_scenes::{Answer, Experiment, Guess, Method, Studied, error};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -207,13 +207,12 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
     let times = experiment.signals.times();
     let answers = observed.answers.iter().map(|answer| {
         let updates = answer.track.updates.iter().map(|update| update_json(observed, update));
-        let end = answer.track.last().map(
-            |last| {
-                let bounds = Some(&last.deviations[..]);
-                json!({ "time": last.time, "states": states(observed, last.time, &last.state, bounds) })
-            },
-        );
-        json!({
+        let told = |at: &SampleEstimate| {
+            let bounds = Some(&at.deviations[..]);
+            json!({ "time": at.time, "states": states(observed, at.time, &at.state, bounds) })
+        };
+        let end = answer.track.last().map(told);
+        let mut found = json!({
             "method": answer.method.name(),
             "seconds": answer.seconds,
             "unseen_samples": answer.track.unseen,
@@ -223,7 +222,11 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
             "updates": updates.collect::<Vec<_>>(),
             "fits_as_well": answer.track.others.iter().map(|other| update_json(observed, other)).collect::<Vec<_>>(),
             "end": end,
-        })
+        });
+        if let Some(begin) = smoothed_begin(answer) {
+            found["begin"] = told(begin);
+        }
+        found
     });
     let guess: Map<String, Value> =
         experiment.question.guess.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
@@ -283,6 +286,11 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
     found
 }
 
+/// Where a smoother begins: with what was measured later.
+fn smoothed_begin(answer: &Answer) -> Option<&SampleEstimate> {
+    answer.track.estimates.first().filter(|_| answer.method == Method::Smoother)
+}
+
 /// An experiment as text.
 pub fn observe_text(observed: &Observed<'_>) -> String {
     let experiment = observed.experiment;
@@ -330,10 +338,11 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
                 let _ = writeln!(text, "    {line}");
             }
         }
-        if let Some(last) = answer.track.last() {
-            let _ = writeln!(text, "  at the end, {:.3} s:", last.time);
-            let known = Beside { bounds: &last.deviations, at_bounds: &[], worth: "" };
-            state_lines(&mut text, observed, &names, last.time, &last.state, known);
+        let ends = [("beginning", smoothed_begin(answer)), ("end", answer.track.last())];
+        for (place, at) in ends.into_iter().filter_map(|(place, at)| Some((place, at?))) {
+            let _ = writeln!(text, "  at the {place}, {:.3} s:", at.time);
+            let known = Beside { bounds: &at.deviations, at_bounds: &[], worth: "" };
+            state_lines(&mut text, observed, &names, at.time, &at.state, known);
         }
         if answer.track.unseen > 0 {
             let _ = writeln!(text, "  not observable for {} of {samples} samples", answer.track.unseen);

@@ -50,6 +50,7 @@ fn look(shown: Shown) -> (RGBColor, u32, Option<usize>) {
         Shown::Method(Method::Integration) => (RGBColor(110, 110, 110), 1, Some(2)),
         Shown::Method(Method::Kalman) => (RGBColor(0, 158, 115), 1, Some(3)),
         Shown::Method(Method::Unscented) => (RGBColor(0, 90, 70), 1, Some(3)),
+        Shown::Method(Method::Smoother) => (RGBColor(120, 190, 60), 1, Some(2)),
         Shown::Method(Method::HighGain) => (RGBColor(204, 80, 150), 1, Some(4)),
         Shown::Output(0) => (RGBColor(0, 114, 178), 1, Some(0)),
         Shown::Output(_) => (RGBColor(213, 94, 0), 1, Some(1)),

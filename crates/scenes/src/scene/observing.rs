@@ -3,7 +3,7 @@
 use super::simulated::LibraryBody;
 use palmistry_observe::{
     HighGain, Integration, Interpolation, Kalman, Loss, MovingWindow, MultipleShooting, Observer, OnFault,
-    Shooting, Unscented, WhenBlind, WindowSearch,
+    Shooting, Smoother, Unscented, WhenBlind, WindowSearch,
 };
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
@@ -180,6 +180,8 @@ pub enum Method {
     Kalman,
     /// `unscented`: the unscented Kalman filter.
     Unscented,
+    /// `smoother`: the extended Kalman filter, corrected backwards by what was measured later.
+    Smoother,
     /// `high-gain`: the high-gain observer.
     HighGain,
 }
@@ -194,6 +196,7 @@ impl ObserverSettings {
             Method::Integration => Box::new(Integration),
             Method::Kalman => Box::new(self.kalman),
             Method::Unscented => Box::new(self.unscented),
+            Method::Smoother => Box::new(Smoother { filter: self.kalman }),
             Method::HighGain => Box::new(self.high_gain),
         }
     }
@@ -225,6 +228,7 @@ impl Method {
             Method::Integration => "integration",
             Method::Kalman => "kalman",
             Method::Unscented => "unscented",
+            Method::Smoother => "smoother",
             Method::HighGain => "high-gain",
         }
     }
@@ -238,6 +242,7 @@ impl Method {
             | Method::Integration
             | Method::Kalman
             | Method::Unscented
+            | Method::Smoother
             | Method::HighGain => None,
         }
     }

@@ -83,10 +83,38 @@ fn of_words(line: &str, rest: &str) -> Option<String> {
             "a power of a function stands behind its brackets, as in {function}(x)^{power}"
         ));
     }
-    if words.last() == Some(&"in") && rest.starts_with('(') {
+    if words.last() == Some(&"in") && !rest.starts_with('[') {
         return Some("a range has square brackets, as in x in [-1, 1]".to_owned());
     }
-    None
+    of_an_entry(&words, line, rest)
+}
+
+/// By how a line begins that is an entry of another form.
+fn of_an_entry(words: &[&str], line: &str, rest: &str) -> Option<String> {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let is_equation = rest.starts_with('=') && !rest.starts_with("==");
+    let named: &str = &rest[..rest.find(|c| !is_word(c)).unwrap_or(rest.len())];
+    match words {
+        ["system"] if !named.is_empty() => {
+            Some(format!("a title stands in quotation marks, as in system \"{named}\""))
+        }
+        ["output", name] if is_equation => Some(format!(
+            "an output is an expression: name it by a definition, let {name} = ..., and write output {name}"
+        )),
+        ["claim", of] if is_equation => {
+            Some(format!("a claim has a name and a colon, as in claim a: {of} = ..."))
+        }
+        [] if line.trim().is_empty() && !named.is_empty() => {
+            let behind = rest[named.len()..].trim_start_matches('\'').trim_start();
+            let is_rate = rest[named.len()..].starts_with('\'') && behind.starts_with('=');
+            is_rate.then(|| {
+                format!(
+                    "a rate of change stands under its field: write 'drift f' on the line before {named}'"
+                )
+            })
+        }
+        _ => None,
+    }
 }
 
 /// What may help where the prime of a rate of change is missing: the name that should have one ends before the place.

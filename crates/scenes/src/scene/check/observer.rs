@@ -15,7 +15,7 @@ const MOST_GUESSES: usize = 10_000_000;
 impl Checks<'_> {
     pub(super) fn observer(&self, keys: ObserverKeys, source: Source) -> Result<ObserverSettings, Problem> {
         if keys.methods.is_empty() {
-            let help = "name one or more: newton, trust-region, multiple-shooting, integration, kalman, unscented, high-gain";
+            let help = "name one or more: newton, trust-region, multiple-shooting, integration, kalman, unscented, smoother, high-gain";
             return Err(self.wrong("observer.methods", "there is no method", help));
         }
         self.names("observer.methods", &keys.methods, |method| format!("{method:?}"))?;
