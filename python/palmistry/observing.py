@@ -190,6 +190,8 @@ def _measurements(data: Any, time: str) -> tuple[str | None, list[tuple[str, Any
     found = []
     for name, values in held.items():
         array = numpy.asarray(values)
+        if name == time and array.dtype.kind in "OU":
+            array = _dates(array)
         if array.dtype.kind == "M" and array.size:  # dates: from the first one, in s
             array = (array - array[0]) / numpy.timedelta64(1, "s")
         elif array.dtype.kind == "m":
@@ -200,6 +202,21 @@ def _measurements(data: Any, time: str) -> tuple[str | None, list[tuple[str, Any
     if not any(name == "time" for name, _ in found):
         raise Error(f"the column '{time}' does not hold numbers", "times are seconds, or dates of numpy")
     return None, found
+
+
+def _dates(array: Any) -> Any:
+    """Times that are dates as texts, or dates with a zone of pandas; what is neither stays."""
+    import numpy
+
+    try:
+        plain = [one.isoformat() if hasattr(one, "isoformat") else str(one) for one in array]
+        # of a zone numpy knows nothing: all in one
+        zones = {text[19:].lstrip(".0123456789") for text in plain}
+        if len(zones) != 1:
+            return array
+        return numpy.array([text[: len(text) - len(next(iter(zones)))] for text in plain], dtype="datetime64[ns]")
+    except ValueError:
+        return array
 
 
 def _numbers(series: Any) -> Any:

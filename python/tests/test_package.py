@@ -346,6 +346,22 @@ class Measurements(unittest.TestCase):
         skipped = palmistry.observe(self.system, {"time": self.times, "phi": numpy.where(self.times == 1.0, numpy.inf, self.phi)}, noise=1e-3, on_fault="skip")
         self.assertTrue(skipped.fits)
 
+    def test_dates_are_seconds(self):
+        first = palmistry.observe(self.system, {"time": self.times, "phi": self.phi}, noise=1e-3, times=False).estimates["estimate"]
+        stamps = numpy.datetime64("2026-11-28T10:00:00") + (self.times * 1e9).round().astype("timedelta64[ns]")
+        for times in (stamps, [str(one) for one in stamps], [f"{one}Z" for one in stamps]):
+            found = palmistry.observe(self.system, {"time": times, "phi": self.phi}, noise=1e-3, times=False).estimates["estimate"]
+            numpy.testing.assert_allclose(found, first, rtol=1e-6)
+        mixed = [f"{one}{'Z' if place else ''}" for place, one in enumerate(stamps)]
+        self.assertRaisesRegex(Error, "does not hold numbers", palmistry.observe, self.system, {"time": mixed, "phi": self.phi})
+        try:
+            import pandas
+        except ImportError:
+            return
+        frame = pandas.DataFrame({"phi": self.phi}, index=pandas.to_datetime(stamps).tz_localize("UTC"))
+        found = palmistry.observe(self.system, frame, noise=1e-3, times=False).estimates["estimate"]
+        numpy.testing.assert_allclose(found, first, rtol=1e-6)
+
     def test_what_was_not_measured_is_no_fault(self):
         sparse = numpy.where(numpy.arange(101) % 3 == 0, self.phi, numpy.nan)
         found = palmistry.observe(self.system, {"time": self.times, "phi": sparse}, noise=1e-3, times=False)

@@ -45,6 +45,8 @@ pub struct Experiment {
     pub origin: f64,
     /// What was wrong with the rows of a file.
     pub faults: Vec<Fault>,
+    /// The first time as it was written, where times of a file are dates: they are counted from it.
+    pub began: Option<String>,
     /// Columns of a file with empty cells, and what became of these.
     pub sparse: Vec<SparseColumn>,
     /// So many rows at the beginning and at the end of a file are left out, because a column that drives the model says nothing there.
@@ -163,7 +165,7 @@ impl Experiment {
         steady: Steady,
     ) -> Result<Experiment, SceneError> {
         let Groundwork { scene, system, simulation, begun, described, simulates, known, .. } = ground;
-        let RecordReading { record, faults, sparse, outside, .. } = reading;
+        let RecordReading { record, faults, sparse, began, outside, .. } = reading;
         let (record, origin) = match simulates {
             // simulated times are counted from zero
             true => (record, 0.0),
@@ -206,6 +208,7 @@ impl Experiment {
             origin,
             faults,
             sparse,
+            began,
             outside,
             signals,
             question,

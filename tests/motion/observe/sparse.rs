@@ -310,6 +310,69 @@ fn what_drives_the_model_is_held_or_goes_straight() {
     }
 }
 
+/// Dates are seconds since the first of them, from a file and through a pipe; a unit of them is refused.
+#[test]
+fn dates_are_seconds() {
+    let rows = spring(4, 61, |row, output| output == 0 || row % 2 == 0);
+    let plain = csv("x,v", &timed(&rows));
+    // 0.05 s apart, over midnight
+    let date = |row: usize| {
+        let after = 50 * row;
+        match after < 1000 {
+            true => format!("2024-02-28T23:59:59.{after:03}Z"),
+            false => format!("2024-02-29T01:00:{:02}.{:03}+01:00", (after - 1000) / 1000, after % 1000),
+        }
+    };
+    let dated: String = plain
+        .lines()
+        .enumerate()
+        .map(|(place, line)| match place {
+            0 => format!("{line}\n"),
+            row => format!("{},{}\n", date(row - 1), line.split_once(',').unwrap().1),
+        })
+        .collect();
+    let folder = folder();
+    let read = |data: &str, more: &str| {
+        observe(&scene(&folder, data, "\"trust-region\"", &format!("{NOISE}{more}")), &["--no-times"])
+    };
+    let (_, one) = read(&plain, "");
+    let (output, other) = read(&dated, "");
+    assert_eq!(output.status.code(), Some(0), "{other}");
+    assert_eq!(other["time_origin"], "2024-02-28T23:59:59.000Z");
+    for (a, b) in found(&one, 0, "updates/0")
+        .into_iter()
+        .flatten()
+        .zip(found(&other, 0, "updates/0").into_iter().flatten())
+    {
+        assert!((a - b).abs() < 1e-9, "{a} {b}");
+    }
+    let (output, refused) = read(&dated, "\n[columns]\ntime = { from = \"time\", unit = \"ms\" }");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(refused["error"]["message"].as_str().unwrap().contains("dates"), "{refused}");
+    // a stream has windows, and no 'whole'
+    let path = scene(&folder, &dated, "\"trust-region\"", NOISE);
+    let text = std::fs::read_to_string(&path)
+        .unwrap()
+        .replace("whole = true", "window = 60")
+        .replace("data.csv", "-");
+    let path = write(&folder, "stream.toml", text);
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_palmistry"))
+        .args(["observe", path.to_str().unwrap(), "--json", "--no-times"])
+        .stdin(std::process::Stdio::piped())
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::io::Write::write_all(&mut child.stdin.take().unwrap(), dated.as_bytes()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    let line = String::from_utf8(output.stdout).unwrap();
+    let window: Value = serde_json::from_str(line.lines().next().unwrap()).unwrap();
+    assert_eq!(window["time_origin"], "2024-02-28T23:59:59.000Z", "{window}");
+    // what was not measured is not compared in a stream either
+    for ([a, _], [b, _]) in found(&one, 0, "updates/0").into_iter().zip(found(&window, 0, "updates/0")) {
+        assert!((a - b).abs() < 1e-6, "{a} {b}");
+    }
+}
+
 /// What is no gap of a sensor is what it was: a row that was cut off, a word, a column of nothing; a method that needs all.
 #[test]
 fn what_is_damaged_is_not_taken_for_unmeasured() {

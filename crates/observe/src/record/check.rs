@@ -21,12 +21,13 @@ impl RecordRows {
         if skipped.len() == self.rows.len() {
             return Err(RecordError::NothingLeft { path: self.path, faults });
         }
+        let began = self.began.clone();
         let may_lack = |name: &str| rules.empty.contains_key(name);
         let (record, left_out) = self.numbers(|row| !skipped.contains(&row), may_lack);
         let settled = record.settle(rules);
         let (record, sparse, outside) =
             settled.map_err(|column| RecordError::NotMeasured { path: self.path, column })?;
-        Ok(RecordReading { record, faults, left_out, sparse, outside })
+        Ok(RecordReading { record, faults, left_out, sparse, began, outside })
     }
 }
 

@@ -121,6 +121,22 @@ impl ColumnPlan {
         self.places.push((place, source));
     }
 
+    /// That a column which holds dates is taken as it is.
+    ///
+    /// # Errors
+    /// A unit, a factor or an offset is said of it.
+    pub fn takes_dates(&self, path: &Path, column: usize) -> Result<(), RecordError> {
+        match &self.places[column].1 {
+            Some(source) if source.factor != 1.0 || source.offset != 0.0 => {
+                let why =
+                    format!("the column '{}' holds dates, which have no unit, factor or offset", source.from);
+                let help = "say its name alone: they are counted in s from the first one".to_owned();
+                Err(RecordError::Header { path: path.to_owned(), why, help })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// How many columns the file has, as far as the plan goes.
     pub fn width(&self) -> usize {
         self.width

@@ -16,6 +16,7 @@ mod parquet_file;
 mod rows;
 mod sparse;
 mod spike;
+mod stamps;
 mod stream;
 mod table;
 #[cfg(feature = "parquet")]
@@ -77,6 +78,8 @@ pub struct RecordReading {
     pub left_out: Vec<String>,
     /// Columns with empty cells, and what became of these.
     pub sparse: Vec<SparseColumn>,
+    /// The first time as it was written, where times are dates: they are counted from it.
+    pub began: Option<String>,
     /// Rows at the beginning and at the end of which a column that drives the model says nothing: not in the record.
     pub outside: [usize; 2],
 }
@@ -85,7 +88,7 @@ impl RecordReading {
     /// Of a record with which nothing is wrong.
     pub fn whole(record: Record) -> RecordReading {
         let (faults, left_out, sparse) = (Vec::new(), Vec::new(), Vec::new());
-        RecordReading { record, faults, left_out, sparse, outside: [0, 0] }
+        RecordReading { record, faults, left_out, sparse, began: None, outside: [0, 0] }
     }
 }
 

@@ -3,6 +3,7 @@
 use super::columns::ColumnPlan;
 #[cfg(feature = "parquet")]
 use super::parquet_file;
+use super::stamps::Stamps;
 use super::table::{Cell, Row, Table, listed};
 use super::{ColumnNames, Fault, FaultKind, Record, RecordError, STREAM, TIME, comma_separated};
 use palmistry_io::foreign::shown;
@@ -23,6 +24,8 @@ pub struct RecordRows {
     pub(super) shown: Vec<String>,
     /// So many rows stand before these in the file.
     pub(super) before: usize,
+    /// The first time as it was written, where times are dates.
+    pub(super) began: Option<String>,
 }
 
 impl RecordRows {
@@ -103,7 +106,13 @@ impl RecordRows {
         twice(path, &table.names)?;
         let plan = columns.plan(path, &table.names)?;
         let judged = judged(path, &plan, needed)?;
-        let Table { names, rows, foreign } = plan.table(table);
+        let Table { names, mut rows, foreign } = plan.table(table);
+        let mut stamps = Stamps::default();
+        rows.iter_mut().for_each(|row| stamps.count(row, judged[0]));
+        let began = stamps.began().map(str::to_owned);
+        if began.is_some() {
+            plan.takes_dates(path, judged[0])?;
+        }
         if let Some((column, what)) = judged
             .iter()
             .filter_map(|column| Some((column, foreign.get(column)?)))
@@ -116,7 +125,8 @@ impl RecordRows {
         if rows.is_empty() {
             return Err(RecordError::NoRows { path: path.to_owned() });
         }
-        Ok(RecordRows { path: path.to_owned(), names, rows, needed: judged, shown: plan.shown, before: 0 })
+        let (path, shown, needed) = (path.to_owned(), plan.shown, judged);
+        Ok(RecordRows { path, names, rows, needed, shown, before: 0, began })
     }
 
     /// The record of the rows to keep, numbered from one, and the names of the columns that hold something other than

@@ -4,6 +4,7 @@
 use super::columns::ColumnPlan;
 use super::comma_separated::{BYTE_ORDER_MARK, COMMENT, cell, line_number, names};
 use super::rows::{judged, twice};
+use super::stamps::Stamps;
 use super::table::Row;
 use super::{
     Cell, ColumnNames, EmptyCells, Fault, FaultKind, FaultRules, OnFault, RecordError, RecordRows, STREAM,
@@ -47,6 +48,8 @@ pub struct RowStream {
     /// So many rows stand before those that are kept.
     before: usize,
     last_time: f64,
+    /// From when on times are counted that are dates.
+    stamps: Stamps,
 }
 
 impl RowStream {
@@ -66,6 +69,7 @@ impl RowStream {
             judged: 0,
             before: 0,
             last_time: f64::NEG_INFINITY,
+            stamps: Stamps::default(),
         }
     }
 
@@ -73,6 +77,11 @@ impl RowStream {
     pub fn names(&self) -> Option<Vec<String>> {
         let (plan, judged) = self.plan.as_ref()?;
         Some(judged[1..].iter().map(|place| plan.names[*place].clone()).collect())
+    }
+
+    /// The first time as it was written, where times are dates.
+    pub fn began(&self) -> Option<&str> {
+        self.stamps.began()
     }
 
     /// How many rows have arrived.
@@ -125,13 +134,13 @@ impl RowStream {
             if !reader.read_byte_record(&mut line).map_err(unreadable)? {
                 break;
             }
-            let Some((plan, _)) = &self.plan else {
+            let Some((plan, places)) = &self.plan else {
                 let names = names(&line, &self.path)?;
                 twice(&self.path, &names)?;
                 let plan = self.columns.plan(&self.path, &names)?;
                 let needed: Vec<&str> = self.needed.iter().map(String::as_str).collect();
-                let judged = judged(&self.path, &plan, &needed)?;
-                self.plan = Some((plan, judged));
+                let places = judged(&self.path, &plan, &needed)?;
+                self.plan = Some((plan, places));
                 continue;
             };
             let columns = plan.width();
@@ -139,7 +148,12 @@ impl RowStream {
             let number = line.position().map(|at| first + line_number(bytes, at));
             let surplus = line.len().saturating_sub(columns);
             let is_short = line.len() < columns;
-            self.rows.push(plan.row(Row { line: number, cells, surplus, is_short }));
+            let mut row = plan.row(Row { line: number, cells, surplus, is_short });
+            self.stamps.count(&mut row, places[0]);
+            if self.stamps.began().is_some() {
+                plan.takes_dates(&self.path, places[0])?;
+            }
+            self.rows.push(row);
         }
         self.lines += bytes.iter().filter(|byte| **byte == b'\n').count() as u64;
         Ok(())
@@ -180,6 +194,7 @@ impl RowStream {
             rows: std::mem::take(&mut self.rows),
             needed: needed.clone(),
             before: self.before,
+            began: None,
         };
         let first = self.before + self.judged;
         let is_here = |fault: &Fault| (first..self.before + end).contains(&(fault.row - 1));

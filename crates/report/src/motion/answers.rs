@@ -66,6 +66,21 @@ pub fn fault_lines(faults: &[Fault]) -> Vec<String> {
     faults.iter().map(ToString::to_string).collect()
 }
 
+/// From when on times are counted: a date as it was written, or seconds of another age; none where they are taken as they are.
+pub(super) fn origin(experiment: &Experiment) -> Option<Value> {
+    let dated = experiment.began.as_ref().map(|began| json!(began));
+    dated.or_else(|| (experiment.origin != 0.0).then(|| json!(experiment.origin)))
+}
+
+/// The same as a line; empty where there is nothing to say.
+pub(super) fn origin_in_words(experiment: &Experiment) -> String {
+    match (&experiment.began, experiment.origin) {
+        (Some(began), _) => format!("times are counted from the first row, {}\n", shown(began)),
+        (None, 0.0) => String::new(),
+        (None, origin) => format!("times are counted from the first sample, at {origin} s\n"),
+    }
+}
+
 /// In which columns of a file something was not measured, as lines.
 pub(super) fn sparse_lines(experiment: &Experiment) -> Vec<String> {
     let rows = experiment.signals.times().len() + experiment.outside.iter().sum::<usize>();
@@ -251,8 +266,8 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
     if !units.is_empty() {
         found["units"] = Value::Object(units);
     }
-    if experiment.origin != 0.0 {
-        found["time_origin"] = json!(experiment.origin);
+    if let Some(origin) = origin(experiment) {
+        found["time_origin"] = origin;
     }
     if !experiment.sparse.is_empty() {
         let column = |own: &SparseColumn| {
@@ -312,9 +327,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         let samples = counted(samples, "sample");
         let _ = writeln!(text, "{samples} from a file; faults: {}", experiment.faults.len());
     }
-    if experiment.origin != 0.0 {
-        let _ = writeln!(text, "times are counted from the first sample, at {} s", experiment.origin);
-    }
+    text.push_str(&origin_in_words(experiment));
     for line in fault_lines(&experiment.faults).into_iter().chain(sparse_lines(experiment)) {
         let _ = writeln!(text, "  {line}");
     }

@@ -1,6 +1,8 @@
 //! What observers make of a stream: a line of JSON or some lines of text a window, and the end.
 
-use crate::motion::answers::{Beside, Observed, end_name, fault_lines, state_lines, states, update_json};
+use crate::motion::answers::{
+    Beside, Observed, end_name, fault_lines, origin, origin_in_words, state_lines, states, update_json,
+};
 use crate::motion::fit::{fit_in_words, suspects_in_words};
 use crate::motion::verdicts::{innovations_in_words, innovations_json, together_in_words, together_json};
 use palmistry_scenes::{StreamAnswer, StreamEnd, WindowReport};
@@ -31,8 +33,8 @@ pub fn stream_json(report: &WindowReport<'_>) -> Value {
         "faults": fault_lines(&report.faults),
         "observers": report.answers.iter().map(answer).collect::<Vec<_>>(),
     });
-    if report.experiment.origin != 0.0 {
-        found["time_origin"] = json!(report.experiment.origin);
+    if let Some(origin) = origin(report.experiment) {
+        found["time_origin"] = origin;
     }
     found
 }
@@ -72,10 +74,7 @@ pub fn stream_text(report: &WindowReport<'_>, is_timed: bool) -> String {
     let mut text = String::new();
     if report.window == 1 {
         let _ = writeln!(text, "{}", report.experiment.scene.title);
-        if report.experiment.origin != 0.0 {
-            let origin = report.experiment.origin;
-            let _ = writeln!(text, "times are counted from the first sample, at {origin} s");
-        }
+        text.push_str(&origin_in_words(report.experiment));
     }
     for line in fault_lines(&report.faults) {
         let _ = writeln!(text, "  {line}");

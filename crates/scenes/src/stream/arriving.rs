@@ -130,7 +130,8 @@ impl Arriving<'_> {
         let record =
             Record::new(self.buffer.times[rows.clone()].to_vec(), names.into_iter().zip(columns).collect());
         let record = record.map_err(|error| unusable(&ground.scene, &error))?;
-        let reading = RecordReading::whole(record);
+        let began = self.rows.began().map(str::to_owned);
+        let reading = RecordReading { began, ..RecordReading::whole(record) };
         Experiment::with_readings(ground, reading, None, steady)
     }
 
