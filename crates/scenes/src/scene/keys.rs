@@ -186,7 +186,8 @@ pub(super) struct PalmsKeys {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ObserverKeys {
-    pub methods: Vec<Method>,
+    #[serde(default)]
+    pub methods: Option<Vec<Method>>,
     pub estimate: Vec<String>,
     #[serde(default)]
     pub known: BTreeMap<String, f64>,

@@ -1,7 +1,7 @@
 //! What is to be found out, and the studies.
 
 use super::super::keys::{GuessKeys, ModeKeys, ObserverKeys};
-use super::super::{CurvatureStudy, Guess, ModeSettings, ObserverSettings, Study};
+use super::super::{CurvatureStudy, Guess, Method, ModeSettings, ObserverSettings, Study};
 use super::{Checks, MOST_SAMPLES, Problem, Source};
 use palmistry_observe::{CalibrationKind, Loss};
 use std::collections::BTreeMap;
@@ -12,13 +12,16 @@ const MOST_BOUNDS: usize = 1_000_000;
 /// The most first guesses that a study may try.
 const MOST_GUESSES: usize = 10_000_000;
 
+/// The method that is taken where none is named: from a guess the shortest way, from nowhere in particular the one that arrives most often (the book's comparison of observers).
+fn default_method(guess: &Guess) -> Method {
+    match guess {
+        Guess::Sample => Method::MultipleShooting,
+        Guess::Values(_) | Guess::Off(_) | Guess::None => Method::TrustRegion,
+    }
+}
+
 impl Checks<'_> {
     pub(super) fn observer(&self, keys: ObserverKeys, source: Source) -> Result<ObserverSettings, Problem> {
-        if keys.methods.is_empty() {
-            let help = "name one or more: newton, trust-region, multiple-shooting, integration, kalman, unscented, smoother, high-gain";
-            return Err(self.wrong("observer.methods", "there is no method", help));
-        }
-        self.names("observer.methods", &keys.methods, |method| format!("{method:?}"))?;
         if keys.estimate.is_empty() {
             let help = "name the states that are estimated";
             return Err(self.wrong("observer.estimate", "there is nothing to estimate", help));
@@ -34,6 +37,12 @@ impl Checks<'_> {
         }
         self.estimation(&keys, source)?;
         let guess = self.guess(keys.guess, keys.guess_off, &keys.estimate, source)?;
+        let methods = keys.methods.unwrap_or_else(|| vec![default_method(&guess)]);
+        if methods.is_empty() {
+            let help = "name one or more: newton, trust-region, multiple-shooting, integration, kalman, unscented, smoother, high-gain";
+            return Err(self.wrong("observer.methods", "there is no method", help));
+        }
+        self.names("observer.methods", &methods, |method| format!("{method:?}"))?;
         self.names("observer.clamp", &keys.clamp, |name| format!("'{name}'"))?;
         for (index, name) in keys.clamp.iter().enumerate() {
             self.sought(&format!("observer.clamp[{index}]"), name, &keys.estimate)?;
@@ -57,7 +66,7 @@ impl Checks<'_> {
         self.positive("observer.unscented.least_sigma", keys.unscented.least_sigma, "")?;
         self.not_negative("observer.unscented.kappa", keys.unscented.kappa, "")?;
         self.positive("observer.high_gain.gain", keys.high_gain.gain, "1/s")?;
-        if !keys.modes.is_empty() && !keys.methods.first().is_some_and(|method| method.is_by_windows()) {
+        if !keys.modes.is_empty() && !methods.first().is_some_and(|method| method.is_by_windows()) {
             let help = "let the first method be newton, trust-region or multiple-shooting";
             return Err(self.wrong(
                 "observer.methods",
@@ -90,7 +99,7 @@ impl Checks<'_> {
             whole: keys.whole,
             bounds: keys.bounds,
             loss: keys.loss,
-            methods: keys.methods,
+            methods,
             estimate: keys.estimate,
             known: keys.known,
             inputs: keys.inputs,
@@ -197,14 +206,7 @@ impl Checks<'_> {
             }
             // a body between palms tells its state by itself
             (None, None) if source.has_palms => Ok(Guess::None),
-            (None, None) if source.samples.is_some() => Ok(Guess::Sample),
-            (None, None) => {
-                let first = estimate.first().map_or("x", String::as_str);
-                let help = format!(
-                    "add, for instance: guess = {{ {first} = 2.0, ... }}, or guess = \"sample\" for the middle of the sample box"
-                );
-                Err(self.wrong_key("observer", "there is no first guess", help))
-            }
+            (None, None) => Ok(Guess::Sample),
             (None, Some(off)) => {
                 self.finite("observer.guess_off", off)?;
                 if source.samples.is_none() {
