@@ -250,7 +250,7 @@ fn a_smoother_is_least_squares_of_all_samples_together() {
         }
         for (place, row) in [("begin", 0), ("end", ROWS - 1)] {
             let states = format!("/observers/0/{place}/states");
-            assert_eq!(number(&json, &format!("{states}/v/recovered")), told[row][3]);
+            assert!((number(&json, &format!("{states}/v/recovered")) - told[row][3]).abs() < 1e-12);
         }
         // a filter knows as much at the end, and less before
         assert_eq!(json["observers"][0]["end"], json["observers"][1]["end"]);

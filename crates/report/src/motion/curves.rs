@@ -15,6 +15,15 @@ const CHART: i32 = 500;
 /// No picture needs more places along its axis.
 const PLACES: usize = 130;
 
+/// Of outputs, with their marks.
+const OUTPUTS: [(RGBColor, usize); 5] = [
+    (RGBColor(0, 114, 178), 0),
+    (RGBColor(213, 94, 0), 1),
+    (RGBColor(0, 158, 115), 3),
+    (RGBColor(204, 121, 167), 4),
+    (RGBColor(86, 180, 233), 2),
+];
+
 /// What a curve shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shown {
@@ -52,8 +61,10 @@ fn look(shown: Shown) -> (RGBColor, u32, Option<usize>) {
         Shown::Method(Method::Unscented) => (RGBColor(0, 90, 70), 1, Some(3)),
         Shown::Method(Method::Smoother) => (RGBColor(120, 190, 60), 1, Some(2)),
         Shown::Method(Method::HighGain) => (RGBColor(204, 80, 150), 1, Some(4)),
-        Shown::Output(0) => (RGBColor(0, 114, 178), 1, Some(0)),
-        Shown::Output(_) => (RGBColor(213, 94, 0), 1, Some(1)),
+        Shown::Output(output) => {
+            let (colour, mark) = OUTPUTS[output % OUTPUTS.len()];
+            (colour, 1, Some(mark))
+        }
     }
 }
 

@@ -34,8 +34,9 @@ fn truth(observed: &Observed<'_>, name: &str) -> Vec<(f64, f64)> {
     observed.experiment.signals.times().iter().copied().zip(values.unwrap_or_default()).collect()
 }
 
-/// A range that shows the truth and, as far as they come near it, the recovered values; of these most where there is no truth.
-fn range(truth: &[(f64, f64)], curves: &[Curve]) -> (f64, f64) {
+/// A range that shows the truth and, as far as they come near it, the recovered values; of these most where there is no truth, with their bars unless these are longer than all that
+/// there is to see.
+fn range(truth: &[(f64, f64)], curves: &[Curve], bars: &[[f64; 2]]) -> (f64, f64) {
     let ends = |values: &[f64]| {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         (low, values.iter().copied().fold(f64::NEG_INFINITY, f64::max))
@@ -58,7 +59,9 @@ fn range(truth: &[(f64, f64)], curves: &[Curve]) -> (f64, f64) {
     off.sort_by(f64::total_cmp);
     let reach = off.get(off.len() / 2).map_or(0.0, |middle| 3.0 * middle).max(0.6 * span);
     let near = |value: &f64| *value > low - reach && *value < high + reach;
-    let shown: Vec<f64> = recovered.into_iter().filter(near).chain([low, high]).collect();
+    let is_short = |[low, high]: &&[f64; 2]| truth.is_empty() && (high - low) / 2.0 <= span;
+    let bars = bars.iter().filter(is_short).flatten().copied();
+    let shown: Vec<f64> = recovered.into_iter().chain(bars).filter(near).chain([low, high]).collect();
     let (low, high) = ends(&shown);
     let room = 0.06 * (high - low).max(span / 2.0);
     (low - room, high + room)
@@ -87,7 +90,6 @@ pub(super) fn state(observed: &Observed<'_>, place: usize) -> String {
         Curve::of_method(answer.method, points.collect())
     };
     let mut curves: Vec<Curve> = observed.answers.iter().map(recovered).collect();
-    let range = range(&truth, &curves);
     let mut bars = Vec::new();
     for answer in observed.answers {
         for (time, value, deviation) in bounds(answer, place) {
@@ -95,6 +97,8 @@ pub(super) fn state(observed: &Observed<'_>, place: usize) -> String {
             bars.push((Shown::Method(answer.method), time, ends.0, ends.1));
         }
     }
+    let ends: Vec<[f64; 2]> = bars.iter().map(|(_, _, low, high)| [*low, *high]).collect();
+    let range = range(&truth, &curves, &ends);
     if !truth.is_empty() {
         curves.insert(0, Curve::truth(truth));
     }
@@ -267,11 +271,16 @@ mod tests {
     fn a_range_follows_the_truth() {
         let truth = [(0.0, 1.0), (1.0, 2.0)];
         let curves = [Curve::truth(vec![(0.0, 0.9), (0.2, 1.5), (0.5, 1e9), (1.0, f64::NAN)])];
-        let (low, high) = range(&truth, &curves);
+        let (low, high) = range(&truth, &curves, &[[-50.0, 50.0]]);
         assert!(low < 0.9 && low > 0.7 && high > 2.0 && high < 2.2, "{low} {high}");
         // a truth that stands still: what is beside it is shown
-        let (low, high) = range(&[(0.0, 1.0), (1.0, 1.0)], &[Curve::truth(vec![(0.0, 1.5), (1.0, 1.6)])]);
+        let (low, high) =
+            range(&[(0.0, 1.0), (1.0, 1.0)], &[Curve::truth(vec![(0.0, 1.5), (1.0, 1.6)])], &[]);
         assert!(low < 1.0 && high > 1.6, "{low} {high}");
-        assert_eq!(range(&[], &[]), (0.0, 1.0));
+        assert_eq!(range(&[], &[], &[]), (0.0, 1.0));
+        // a constant that was estimated: its bars are seen, and one that is longer than all else is not
+        let flat = [Curve::truth(vec![(0.0, 1.0), (1.0, 1.0)])];
+        let (low, high) = range(&[], &flat, &[[0.97, 1.03], [-9.0, 11.0]]);
+        assert!(low < 0.97 && low > 0.8 && high > 1.03 && high < 1.2, "{low} {high}");
     }
 }
