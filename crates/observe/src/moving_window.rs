@@ -295,7 +295,8 @@ impl MovingWindow {
                 track.estimates.push(SampleEstimate { time: sample.time, state, deviations, residual });
             }
             let ends = own.map(|own| {
-                [first, last].map(|sample| spread(task, sample, &own, samples.len(), from.is_tested))
+                [(first, rows.start), (last, rows.end - 1)]
+                    .map(|at| spread(task, at, &own, samples.len(), from.is_tested))
             });
             return Followed { belief: last.state[..sought].to_vec(), ends };
         }

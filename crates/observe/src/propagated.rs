@@ -15,19 +15,23 @@ pub(super) fn deviations(sample: &Sample, covariance: &DMatrix<f64>, sought: usi
     (0..sought).map(|i| variance(i).max(0.0).sqrt()).collect()
 }
 
-/// How well the whole state is known at a sample; `readings` is how many stand behind it.
+/// How well the whole state is known at a sample, which has its `row`; `readings` is how many stand behind it.
 pub(super) fn spread(
     task: &Task<'_>,
-    sample: &Sample,
+    (sample, row): (&Sample, usize),
     covariance: &DMatrix<f64>,
     readings: usize,
     is_tested: bool,
 ) -> Spread {
     let carried = &sample.slopes * covariance;
+    let mut by_reading = &carried * sample.output_slopes.transpose();
+    let read = task.readings(row);
+    let unmeasured = read.iter().enumerate().filter(|(_, value)| value.is_nan());
+    unmeasured.for_each(|(output, _)| by_reading.column_mut(output).fill(0.0));
     Spread {
         state: sample.state.clone(),
         covariance: &carried * sample.slopes.transpose(),
-        by_reading: &carried * sample.output_slopes.transpose(),
+        by_reading,
         coherent: coherent(task, sample, readings),
         is_tested,
     }

@@ -258,6 +258,33 @@ fn a_smoother_is_least_squares_of_all_samples_together() {
     }
 }
 
+/// Windows that know nothing of each other meet in a sample that both have read, or that neither has: where they are apart by no more than their deviations, what they share taken off, no seam is called
+/// wrong, and probabilities are as even as they have to be.
+#[test]
+fn windows_meet_in_samples_that_were_not_measured() {
+    let (mut small, mut all, mut least) = (0u32, 0u32, 1.0f64);
+    for seed in 0..40 {
+        let mut random = ChaCha8Rng::seed_from_u64(2000 + seed);
+        let gaps: Vec<bool> = (0..242).map(|_| random.random_bool(0.3)).collect();
+        let rows = spring(seed, 121, |row, output| gaps[2 * row + output]);
+        let folder = folder();
+        let path = scene(&folder, &csv("x,v", &timed(&rows)), "\"trust-region\"", NOISE);
+        let text =
+            std::fs::read_to_string(&path).unwrap().replace("whole = true", "window = 20\ninherit = false");
+        let (_, json) = observe(&write(&folder, "scene.toml", text), &[]);
+        for update in json["observers"][0]["updates"].as_array().unwrap() {
+            let Some(probability) = update["seam"]["probability"].as_f64() else { continue };
+            least = least.min(probability);
+            small += u32::from(probability < 0.1);
+            all += 1;
+        }
+    }
+    // a tenth is expected below a tenth: four deviations of that
+    let [expected, deviation] = [0.1 * f64::from(all), (0.09 * f64::from(all)).sqrt()];
+    assert!(all >= 150 && (f64::from(small) - expected).abs() < 4.0 * deviation, "{small} of {all}");
+    assert!(least > 1e-4, "{least}");
+}
+
 const PUSHED: &str = "system \"A mass that is pushed\" state x, v param u drift f x' = v v' = u output x sample x in [-2, 2] v in [-2, 2] u in [-1, 1]";
 
 /// What drives the model goes between its samples as it is told: a force that is held, measured each fourth row from the second on. The mass is where the integral by hand has it, and
