@@ -1,6 +1,5 @@
 //! Studies: of number types on a system, of motions of palms, of where a body lies between them.
 
-use crate::answers::printed;
 use crate::errors::{unreadable, unusable};
 use crate::system::System;
 use crate::told::Told;
