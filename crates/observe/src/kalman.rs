@@ -1,7 +1,6 @@
 //! The extended Kalman filter, the field's usual choice.
 
 use super::filtered::{Filtered, Innovation, measured};
-use super::smoother::{Passed, Predicted};
 use super::task::{Observer, Task};
 use super::track::Track;
 use super::{Learned, Lost, Order};
@@ -30,6 +29,24 @@ impl Default for Kalman {
     fn default() -> Self {
         Kalman { prior: 0.5, process_noise: 0.01, least_sigma: 1e-6 }
     }
+}
+
+/// What a filter believed at a sample, and how it came there.
+#[derive(Clone, Debug)]
+pub(super) struct Passed {
+    /// After the measurements of the sample.
+    pub state: DVector<f64>,
+    pub covariance: DMatrix<f64>,
+    /// The derivative of the flow from the sample before, and what was predicted; none at the first sample and where the model could not be followed.
+    pub predicted: Option<Predicted>,
+}
+
+/// What was predicted from the sample before.
+#[derive(Clone, Debug)]
+pub(super) struct Predicted {
+    pub flow: DMatrix<f64>,
+    pub state: DVector<f64>,
+    pub covariance: DMatrix<f64>,
 }
 
 impl Observer for Kalman {

@@ -27,6 +27,7 @@ mod flow;
 mod high_gain;
 mod inheritance;
 mod integration;
+mod interpolation;
 mod inversion;
 mod jet;
 mod kalman;
@@ -78,6 +79,7 @@ pub use flow::Lost;
 pub use flow::{ModelFlow, Order, Sample, Stride, advance};
 pub use high_gain::HighGain;
 pub use integration::Integration;
+pub use interpolation::Interpolation;
 pub use kalman::Kalman;
 pub use learned::{Arrival, Learned, Spread, Unseen};
 pub use loss::Loss;
@@ -95,7 +97,7 @@ pub use record::{
 #[doc(hidden)]
 pub use record::{RecordRows, RowStream, STREAM, TIME, faults_of};
 pub use response::{Response, ResponseError, ResponseQuestion, response};
-pub use signal::{Interpolation, SignalError, Signals};
+pub use signal::{SignalError, Signals};
 pub use smoother::Smoother;
 pub use suspect::{Suspect, SuspectKind};
 pub use task::{EstimateQuestion, Observer, Task};

@@ -1,34 +1,10 @@
 //! What is known of time: columns of measurements, and the curves that run through them.
 
-use super::Record;
+use super::Interpolation;
 use num_dual::{Dual64, DualNum};
-use serde::Deserialize;
 
 /// So many samples carry the curve at a time at most: its error is of this order in the time between two samples.
 const POINTS: usize = 8;
-
-/// How a column goes from one of its samples to the next.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Interpolation {
-    /// `polynomial`: by the polynomial through the nearest eight samples, as what was sampled much faster than it changes.
-    #[default]
-    Polynomial,
-    /// `linear`: by a straight line, as what changes between samples in ways that nobody knows.
-    Linear,
-    /// `hold`: it keeps its value until the next sample, as a command does.
-    Hold,
-}
-
-impl Interpolation {
-    fn points(self) -> usize {
-        match self {
-            Interpolation::Polynomial => POINTS,
-            Interpolation::Linear => 2,
-            Interpolation::Hold => 1,
-        }
-    }
-}
 
 /// Why a table is no set of signals.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -67,15 +43,6 @@ pub struct Signals {
 }
 
 impl Signals {
-    /// The columns of a recording; what was not measured in a sample is NaN there.
-    ///
-    /// # Errors
-    /// As for [`Signals::new`].
-    pub fn of_record(record: &Record) -> Result<Signals, SignalError> {
-        let column = |name: &String| Some((name.clone(), record.column(name)?.to_vec()));
-        Signals::sparse(record.times().to_vec(), record.names().iter().filter_map(column).collect())
-    }
-
     /// Of times and named columns.
     ///
     /// # Errors
@@ -127,7 +94,7 @@ impl Signals {
 
     /// The same that go otherwise from one sample to the next.
     pub fn interpolated(self, interpolation: Interpolation) -> Signals {
-        let points = interpolation.points().min(self.times.len());
+        let points = interpolation.points(POINTS).min(self.times.len());
         let weight = |run: &[f64], i: usize| -> f64 {
             let others = run.iter().enumerate().filter(|(j, _)| *j != i);
             1.0 / others.map(|(_, other)| (run[i] - other) / self.unit).product::<f64>()

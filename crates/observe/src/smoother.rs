@@ -19,24 +19,6 @@ pub struct Smoother {
     pub filter: Kalman,
 }
 
-/// What a filter believed at a sample, and how it came there.
-#[derive(Clone, Debug)]
-pub(super) struct Passed {
-    /// After the measurements of the sample.
-    pub state: DVector<f64>,
-    pub covariance: DMatrix<f64>,
-    /// The derivative of the flow from the sample before, and what was predicted; none at the first sample and where the model could not be followed.
-    pub predicted: Option<Predicted>,
-}
-
-/// What was predicted from the sample before.
-#[derive(Clone, Debug)]
-pub(super) struct Predicted {
-    pub flow: DMatrix<f64>,
-    pub state: DVector<f64>,
-    pub covariance: DMatrix<f64>,
-}
-
 impl Observer for Smoother {
     fn observe(&self, task: &Task<'_>) -> Track {
         let mut passed = Vec::new();

@@ -1,6 +1,5 @@
 //! What can be wrong with a row, and the rules by which it is found.
 
-use super::EmptyCells;
 use crate::Interpolation;
 use palmistry_io::foreign::shown;
 use std::collections::BTreeMap;
@@ -15,6 +14,15 @@ pub enum OnFault {
     Stop,
     /// Use the other rows.
     Skip,
+}
+
+/// What an empty cell of a column means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EmptyCells {
+    /// Nothing was measured then: of an output, which is compared where it was measured.
+    NotMeasured,
+    /// The value lies between those around it: of a column that drives the model.
+    Interpolated,
 }
 
 /// How faults are found, and what to do about them.

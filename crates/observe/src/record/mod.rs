@@ -27,9 +27,9 @@ mod write;
 pub use check::faults_of;
 pub use columns::{ColumnNames, ColumnSource};
 pub use error::RecordError;
-pub use fault::{Fault, FaultKind, FaultRules, OnFault};
+pub use fault::{EmptyCells, Fault, FaultKind, FaultRules, OnFault};
 pub use rows::RecordRows;
-pub use sparse::{EmptyCells, SparseColumn};
+pub use sparse::SparseColumn;
 #[doc(hidden)]
 pub use stream::RowStream;
 pub(crate) use table::{Cell, Row};

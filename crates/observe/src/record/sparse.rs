@@ -1,16 +1,7 @@
 //! Columns in which not each sample was measured, as where sensors have rates of their own.
 
-use super::{FaultRules, Record};
-use crate::{Interpolation, Signals};
-
-/// What an empty cell of a column means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EmptyCells {
-    /// Nothing was measured then: of an output, which is compared where it was measured.
-    NotMeasured,
-    /// The value lies between those around it: of a column that drives the model.
-    Interpolated,
-}
+use super::{EmptyCells, FaultRules, Record};
+use crate::{Interpolation, SignalError, Signals};
 
 /// A column with empty cells.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -75,6 +66,17 @@ impl Record {
             Some((name, _)) => Err(name.clone()),
             None => Ok((self, sparse, outside)),
         }
+    }
+}
+
+impl Signals {
+    /// The columns of a recording; what was not measured in a sample is NaN there.
+    ///
+    /// # Errors
+    /// As for [`Signals::new`].
+    pub fn of_record(record: &Record) -> Result<Signals, SignalError> {
+        let column = |name: &String| Some((name.clone(), record.column(name)?.to_vec()));
+        Signals::sparse(record.times().to_vec(), record.names().iter().filter_map(column).collect())
     }
 }
 

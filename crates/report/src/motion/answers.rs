@@ -98,7 +98,7 @@ pub(super) fn sparse_lines(experiment: &Experiment) -> Vec<String> {
     };
     let [first, last] = experiment.outside;
     let outside = (first + last > 0).then(|| {
-        format!("{first} rows at the beginning and {last} at the end are left out: a column that drives the model is empty up to there")
+        format!("the first {first} and the last {last} rows are left out: a column that drives the model is empty there")
     });
     experiment.sparse.iter().map(column).chain(outside).collect()
 }
@@ -351,7 +351,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
                 let _ = writeln!(text, "    {line}");
             }
         }
-        let ends = [("beginning", smoothed_begin(answer)), ("end", answer.track.last())];
+        let ends = [("start", smoothed_begin(answer)), ("end", answer.track.last())];
         for (place, at) in ends.into_iter().filter_map(|(place, at)| Some((place, at?))) {
             let _ = writeln!(text, "  at the {place}, {:.3} s:", at.time);
             let known = Beside { bounds: &at.deviations, at_bounds: &[], worth: "" };

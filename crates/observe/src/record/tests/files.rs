@@ -8,6 +8,14 @@ pub(super) fn bits(record: &Record) -> Vec<Vec<u64>> {
     columns.map(|column| column.iter().map(|v| v.to_bits()).collect()).collect()
 }
 
+/// A NaN has many patterns of bits and one meaning: nothing was measured.
+pub(super) fn one_nan(mut bits: Vec<Vec<u64>>) -> Vec<Vec<u64>> {
+    for bits in bits.iter_mut().flatten().filter(|bits| f64::from_bits(**bits).is_nan()) {
+        *bits = f64::NAN.to_bits();
+    }
+    bits
+}
+
 pub(super) fn any_record() -> impl Strategy<Value = Record> {
     (1usize..30, 0usize..4).prop_flat_map(|(rows, columns)| {
         let column = proptest::collection::vec(any::<u64>().prop_map(f64::from_bits), rows);
@@ -35,13 +43,6 @@ proptest! {
         record.write(&path).unwrap();
         let back = Record::read(&path, &[]).unwrap();
         prop_assert_eq!(back.names(), record.names());
-        // a NaN has many patterns of bits and one name
-        let one_nan = |mut bits: Vec<Vec<u64>>| {
-            for bits in bits.iter_mut().flatten().filter(|bits| f64::from_bits(**bits).is_nan()) {
-                *bits = f64::NAN.to_bits();
-            }
-            bits
-        };
         prop_assert_eq!(one_nan(bits(&back)), one_nan(bits(&record)));
     }
 
