@@ -525,8 +525,8 @@ class Stress(Answer):
     """How near to a singular set, how large, and in which units number types misreport a rank."""
 
     def __init__(self, found: Any) -> None:
-        told, pictures = found
-        super().__init__(told)
+        answer, pictures = found
+        super().__init__(answer)
         self._pictures = pictures
 
     @property

@@ -210,6 +210,9 @@ def _dates(array: Any) -> Any:
 
     try:
         plain = [one.isoformat() if hasattr(one, "isoformat") else str(one) for one in array]
+        # a year alone is no date, but a number
+        if any(len(text) < len("2026-11-28T10:00:00") for text in plain):
+            return array
         # of a zone numpy knows nothing: all in one
         zones = {text[19:].lstrip(".0123456789") for text in plain}
         if len(zones) != 1:

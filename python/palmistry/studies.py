@@ -37,7 +37,8 @@ def advise(
             raise Error(f"{name}: {low} to {high} is no range of angles", "give the least and the greatest angle, in rad")
     if rate is not None and not 0.0 <= rate < float("inf"):
         raise Error(f"rate: {rate} rad/s is no rate", "give one from zero on")
-    _counts(trials=trials, runs=runs)
+    _within("trials", trials, 1_000_000)
+    _within("runs", runs, 100)
     return _asked(Motions, lambda: _native.advise(os.fspath(scene), trials, [list(angle1), list(angle2)], rate, runs, seed))
 
 
@@ -93,7 +94,6 @@ def check(path: str | os.PathLike[str]) -> list[dict]:
     return json.loads(problems)
 
 
-def _counts(**given: int | None) -> None:
-    for name, value in given.items():
-        if value is not None and value < 1:
-            raise Error(f"{name}={value}", "give one or more")
+def _within(name: str, value: int | None, most: int) -> None:
+    if value is not None and not 1 <= value <= most:
+        raise Error(f"{name}={value} is not possible", f"between 1 and {most} are")

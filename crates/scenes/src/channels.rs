@@ -4,7 +4,10 @@ use super::scene::{Channel, Scene, SceneError};
 use super::simulation::{NOMINAL, TOUCH};
 use crate::not_told::not_told;
 use palmistry_lang::System;
-use palmistry_observe::{CalibrationKind, EstimateQuestion, ReadingErrors, SignalError, Signals, Task};
+use palmistry_observe::{
+    CalibrationKind, EmptyCells, EstimateQuestion, Interpolation, ReadingErrors, SignalError, Signals,
+    SparseColumn, Task,
+};
 use std::collections::BTreeMap;
 
 /// What is known of a column's sensor: it reads `gain * x(t - delay) + bias`.
@@ -83,6 +86,18 @@ pub(super) fn are_columns(scene: &Scene, signals: &Signals) -> Result<(), SceneE
         }
     }
     for (index, name) in scene.observer.estimate.iter().enumerate() {
+        // what was earlier is followed back, in steps that know no jumps
+        let is_delay = CalibrationKind::of(name).is_some_and(|(_, kind)| kind == CalibrationKind::Delay);
+        if is_delay && scene.data.interpolation == Interpolation::Hold {
+            let message = format!("'{name}' cannot be estimated where columns are held between samples");
+            let help = "take interpolation = \"linear\" or \"polynomial\", or leave the delay out";
+            return Err(scene.error_at(
+                &format!("observer.estimate[{index}]"),
+                message,
+                "estimated here",
+                help,
+            ));
+        }
         if let Some((column, _)) =
             CalibrationKind::of(name).filter(|(column, _)| signals.find(column).is_none())
         {
@@ -135,12 +150,12 @@ fn stated(scene: &Scene, name: &str) -> Option<ReadingErrors> {
     })
 }
 
-/// Hands a task what is known of the errors of single columns: in a scene that says something of one.
+/// Hands a task what is known of the errors of single columns: in a scene that says something of one. Of those that are `sparse` errors are larger, where cells were filled.
 ///
 /// # Errors
 /// Where a recording's columns err, and nothing is said of its outputs.
 pub(super) fn tell(
-    scene: &Scene,
+    (scene, sparse): (&Scene, &[SparseColumn]),
     task: &mut Task<'_>,
     has_palms: bool,
     simulated: bool,
@@ -173,7 +188,10 @@ pub(super) fn tell(
         let unsaid = if !has_palms && outputs.contains(name) { common } else { ReadingErrors::default() };
         let gain = sensors.get(name).map_or(1.0, |known| known.gain.abs());
         let ReadingErrors { normal, rounding } = stated(scene, name).unwrap_or(unsaid);
-        let errors = ReadingErrors { normal: normal / gain, rounding: rounding / gain };
+        // errors of filled cells hang together: a measured value errs for all rows that it stands for, as so many independent errors of their root's size do
+        let filled = sparse.iter().find(|own| own.column == *name && own.empty == EmptyCells::Interpolated);
+        let together = filled.map_or(1.0, |own| own.stands_for.sqrt()) / gain;
+        let errors = ReadingErrors { normal: normal * together, rounding: rounding * together };
         if !errors.are_none() {
             task.errors.insert(name.clone(), errors);
         }

@@ -193,8 +193,9 @@ impl Experiment {
         let columns = self.signals.names().iter().enumerate();
         let columns =
             columns.map(|(place, name)| (name.clone(), self.signals.column(place)[rows.clone()].to_vec()));
-        let signals = Signals::new(times, columns.collect());
+        let signals = Signals::sparse(times, columns.collect());
         own.signals = signals
+            .map(|signals| signals.interpolated(self.signals.interpolation()))
             .map_err(|error| self.scene.error_at("observer.window", error.to_string(), "such windows", ""))?;
         own.scene.observer.window = window;
         Ok(own)

@@ -256,7 +256,12 @@ impl Experiment {
         if !task.exact {
             task.noise = Noise::Stated { normal: sensor.noise, rounding: sensor.resolution };
         }
-        channels::tell(&self.scene, &mut task, self.scene.simulated.is_some(), self.simulated().is_some())?;
+        channels::tell(
+            (&self.scene, &self.sparse),
+            &mut task,
+            self.scene.simulated.is_some(),
+            self.simulated().is_some(),
+        )?;
         let settings = &self.scene.observer;
         (task.inherit, task.whole, task.loss) = (settings.inherit, settings.whole, settings.loss);
         // who gives no guess has other ways to begin anew
@@ -272,8 +277,17 @@ impl Experiment {
     fn fastest(&self, task: &Task<'_>) -> f64 {
         let times = self.signals.times();
         let columns = task.full.outputs.iter().filter_map(|name| self.signals.find(name));
-        let steps = columns.flat_map(|place| self.signals.column(place).windows(2).zip(times.windows(2)));
-        steps.map(|(value, time)| ((value[1] - value[0]) / (time[1] - time[0])).abs()).fold(0.0, f64::max)
+        let mut fastest = 0.0f64;
+        for place in columns {
+            let all = times.iter().zip(self.signals.column(place));
+            let mut measured = all.filter(|(_, value)| !value.is_nan());
+            let Some(mut before) = measured.next() else { continue };
+            for now in measured {
+                fastest = fastest.max(((now.1 - before.1) / (now.0 - before.0)).abs());
+                before = now;
+            }
+        }
+        fastest
     }
 
     /// The readings of the first window, for who seeks a state without a first guess.

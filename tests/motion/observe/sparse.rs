@@ -337,6 +337,100 @@ fn what_drives_the_model_is_held_or_goes_straight() {
     }
 }
 
+/// A force that is measured with an error each fifth row, and held: all rows in between err with it, and estimates are off by no more than their deviations say, nor are right recordings
+/// called wrong.
+#[test]
+fn errors_of_filled_cells_hang_together() {
+    const ROWS: usize = 121;
+    let (mut squares, mut count) = (0.0, 0u32);
+    for seed in 0..30 {
+        let mut random = ChaCha8Rng::seed_from_u64(3000 + seed);
+        let (mut x, mut v, mut push, mut rows) = (0.3, -0.2, 0.0, Vec::new());
+        for row in 0..ROWS {
+            let is_forced = row % 5 == 0;
+            if is_forced {
+                push = (0.7 * row as f64).sin();
+            }
+            let read = is_forced.then(|| push + 0.3 * normal(&mut random));
+            rows.push(vec![Some(x + 1e-3 * normal(&mut random)), read]);
+            x += STEP * v + STEP * STEP / 2.0 * push;
+            v += STEP * push;
+        }
+        let folder = folder();
+        write(&folder, "pushed.proof", PUSHED);
+        write(&folder, "data.csv", csv("x,u", &timed(&rows)));
+        let text = "title = \"A mass\"\nmodel = \"pushed.proof\"\n[data]\nrecord = \"data.csv\"\nspike = inf\ninterpolation = \"hold\"\n[sensor.x]\nnoise = 1e-3\n\
+                    [sensor.u]\nnoise = 0.3\n[observer]\nmethods = [\"trust-region\"]\nestimate = [\"x\", \"v\"]\nguess = { x = 0.2, v = -0.1 }\nwhole = true\nsteps = 50\n";
+        let (_, json) = observe(&write(&folder, "scene.toml", text), &[]);
+        assert!(number(&json, "/observers/0/updates/0/fit/probability") > 1e-3, "{seed}");
+        for ([value, deviation], truth) in found(&json, 0, "updates/0").into_iter().zip([0.3, -0.2]) {
+            squares += ((value - truth) / deviation).powi(2);
+            count += 1;
+        }
+    }
+    let root = (squares / f64::from(count)).sqrt();
+    assert!((0.5..1.3).contains(&root), "{root}");
+}
+
+/// Where nothing is: a window in which nothing was measured tells nothing and is not said to fit; one value alone; modes; what a column that is not whole cannot have; a recording
+/// whose start is read off derivatives.
+#[test]
+fn where_nothing_was_measured_nothing_is_told() {
+    let run = |rows: &[Cells], method: &str, changes: &[[&str; 2]]| {
+        let folder = folder();
+        let path = scene(&folder, &csv("x,v", &timed(rows)), &format!("\"{method}\""), NOISE);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let text = changes.iter().fold(text, |text, [from, to]| {
+            assert_eq!(text.matches(from).count(), 1, "{from}");
+            text.replace(from, to)
+        });
+        observe(&write(&folder, "scene.toml", text), &["--no-times"])
+    };
+    let message = |(output, json): (std::process::Output, Value)| {
+        assert_eq!(output.status.code(), Some(2), "{json}");
+        json["error"]["message"].as_str().unwrap().to_owned()
+    };
+    let first = spring(5, 81, |row, _| row < 20);
+    for method in ["newton", "trust-region", "multiple-shooting", "kalman", "unscented", "smoother"] {
+        let (output, json) = run(&first, method, &[["whole = true", "window = 20"]]);
+        assert!(output.status.code().is_some_and(|code| code < 2), "{method}: {json}");
+        let alone = run(&first, method, &[["whole = true", "window = 20\ninherit = false"]]).1;
+        let updates = alone["observers"][0]["updates"].as_array().unwrap();
+        for update in updates.iter().filter(|update| update["from"].as_f64().unwrap() > 19.5 * STEP) {
+            assert!(update["fit"]["fits"] != true && update["held"] == true, "{method}: {update}");
+        }
+        assert_eq!(updates.is_empty(), ["kalman", "unscented", "smoother"].contains(&method));
+    }
+    // one column of which nothing is; one value for each unknown, which leave no degree of freedom to test
+    let one = spring(5, 40, |row, output| row == 7 && output == 0);
+    assert!(message(run(&one, "trust-region", &[])).contains("nothing was measured of the column 'v'"));
+    let two = spring(5, 40, |row, output| row == [7, 9][output]);
+    let (_, json) = run(&two, "trust-region", &[]);
+    assert_ne!(json["observers"][0]["updates"][0]["fit"]["fits"], true, "{json}");
+    // systems side by side are told apart in windows that are cut out of the same columns
+    let rows = spring(6, 81, |row, output| (row + output) % 2 == 0);
+    let mode = "steps = 50\n[[observer.modes]]\nname = \"the same\"\nmodel = \"spring.proof\"\nestimate = [\"x\", \"v\"]\nguess = \"sample\"\n";
+    let settings = "kalman = { process_noise = 0 }\nunscented = { process_noise = 0 }\n";
+    let (output, json) = run(
+        &rows,
+        "trust-region",
+        &[["whole = true", "window = 40"], [settings, ""], ["steps = 50\n", mode]],
+    );
+    assert!(output.status.code().is_some_and(|code| code < 2), "{json}");
+    // starts by derivatives need curves: there is none, and others arrive
+    let (output, json) =
+        run(&rows, "multiple-shooting", &[["steps = 50", "steps = 50\nshooting = { derivatives = true }"]]);
+    assert_eq!(output.status.code(), Some(0), "{json}");
+    let known = [["steps = 50", "steps = 50\nknown = { \"x.delay\" = 0.01 }"]];
+    assert!(message(run(&rows, "trust-region", &known)).contains("its delay cannot be undone"));
+    let held = [
+        ["spike = inf", "spike = inf\ninterpolation = \"hold\""],
+        ["estimate = [\"x\", \"v\"]", "estimate = [\"x\", \"v\", \"x.delay\"]"],
+        ["v = -0.4 }", "v = -0.4, \"x.delay\" = 0.01 }"],
+    ];
+    assert!(message(run(&rows, "trust-region", &held)).contains("where columns are held"));
+}
+
 /// Dates are seconds since the first of them, from a file and through a pipe; a unit of them is refused.
 #[test]
 fn dates_are_seconds() {

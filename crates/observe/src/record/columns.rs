@@ -2,6 +2,7 @@
 
 use super::table::{Row, Table, listed};
 use super::{Cell, Record, RecordError, TIME};
+use palmistry_io::foreign::shown;
 use palmistry_lang::nearest;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -128,8 +129,10 @@ impl ColumnPlan {
     pub fn takes_dates(&self, path: &Path, column: usize) -> Result<(), RecordError> {
         match &self.places[column].1 {
             Some(source) if source.factor != 1.0 || source.offset != 0.0 => {
-                let why =
-                    format!("the column '{}' holds dates, which have no unit, factor or offset", source.from);
+                let why = format!(
+                    "the column '{}' holds dates, which have no unit, factor or offset",
+                    shown(&source.from)
+                );
                 let help = "say its name alone: they are counted in s from the first one".to_owned();
                 Err(RecordError::Header { path: path.to_owned(), why, help })
             }

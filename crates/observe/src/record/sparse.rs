@@ -4,12 +4,14 @@ use super::{EmptyCells, FaultRules, Record};
 use crate::{Interpolation, SignalError, Signals};
 
 /// A column with empty cells.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SparseColumn {
     /// Its name, as models know it.
     pub column: String,
     /// In so many rows it was measured.
     pub measured: usize,
+    /// For so many rows a measured value stands in the mean over these rows: itself and the empty ones behind it.
+    pub stands_for: f64,
     /// What its empty cells mean.
     pub empty: EmptyCells,
 }
@@ -39,7 +41,8 @@ impl Record {
             if measured == 0 {
                 return Err(name.clone());
             }
-            sparse.push(SparseColumn { column: name.clone(), measured, empty });
+            let (column, stands_for) = (name.clone(), stands_for(values));
+            sparse.push(SparseColumn { column, measured, stands_for, empty });
         }
         if sparse.is_empty() {
             return Ok((self, sparse, [0, 0]));
@@ -78,6 +81,14 @@ impl Signals {
         let column = |name: &String| Some((name.clone(), record.column(name)?.to_vec()));
         Signals::sparse(record.times().to_vec(), record.names().iter().filter_map(column).collect())
     }
+}
+
+/// For how many rows a measured value stands, itself and the empty ones behind it, in the mean over these rows.
+fn stands_for(values: &[f64]) -> f64 {
+    let places: Vec<usize> = (0..values.len()).filter(|place| !values[*place].is_nan()).collect();
+    let lengths = places.windows(2).map(|pair| (pair[1] - pair[0]) as f64);
+    let (squares, all) = lengths.fold((0.0, 0.0), |(squares, all), own| (squares + own * own, all + own));
+    if all > 0.0 { squares / all } else { 1.0 }
 }
 
 /// A column with a value in each row, by the curve through those that it has.
@@ -123,6 +134,8 @@ mod tests {
             let y = record.column("y").unwrap();
             assert!(y[0].is_nan() && y[1].is_nan() && y[2] == 8.0);
             assert_eq!(columns.iter().map(|own| own.measured).collect::<Vec<_>>(), [2, 3]);
+            // one behind which one is empty; one behind which two are, and one
+            assert_eq!(columns.iter().map(|own| own.stands_for).collect::<Vec<_>>(), [2.0, 2.5]);
         }
     }
 

@@ -83,7 +83,8 @@ pub(super) fn origin_in_words(experiment: &Experiment) -> String {
 
 /// In which columns of a file something was not measured, as lines.
 pub(super) fn sparse_lines(experiment: &Experiment) -> Vec<String> {
-    let rows = experiment.signals.times().len() + experiment.outside.iter().sum::<usize>();
+    // a known delay shortens the signals, and not what was read
+    let rows = experiment.record.len() + experiment.outside.iter().sum::<usize>();
     let column = |own: &SparseColumn| {
         let what = match own.empty {
             EmptyCells::NotMeasured => "compared there".to_owned(),

@@ -83,7 +83,8 @@ fn of_words(line: &str, rest: &str) -> Option<String> {
             "a power of a function stands behind its brackets, as in {function}(x)^{power}"
         ));
     }
-    if words.last() == Some(&"in") && !rest.starts_with('[') {
+    // an index runs in something else: 'for i in 1..3'
+    if words.last() == Some(&"in") && !rest.starts_with('[') && !words.contains(&"for") {
         return Some("a range has square brackets, as in x in [-1, 1]".to_owned());
     }
     of_an_entry(&words, line, rest)
