@@ -87,6 +87,9 @@ pub use palmistry_bodies::{pose_surface, shape};
 
 pub use palmistry_observe as observer;
 
+#[doc(hidden)]
+pub use palmistry_fit as fit;
+
 pub use palmistry_scenes as experiment;
 
 pub use palmistry_workbench::paper;

@@ -5,9 +5,12 @@ use super::{Status, Unusable};
 use clap::{Args, ValueEnum};
 use palmistry::file;
 use palmistry::foreign::name_of;
-use palmistry::import::{ForeignFormat, ForeignUnknowns, ImportQuestion, ImportedModel, import};
+use palmistry::import::{
+    ForeignFormat, ForeignUnknowns, ImportQuestion, ImportedModel, ImportedProblem, PetabFile, import,
+    import_petab, is_petab,
+};
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Files longer than this are refused, as by every command that reads them.
 const LONGEST_FILE: u64 = 16 << 20;
@@ -24,6 +27,8 @@ const LONGEST_FILE: u64 = 16 << 20;
 ///   sbml          SBML core, levels 2 and 3, without events, delays and algebraic rules
 ///   strikepy      model files of StrikePy: x, p, h, f, u and w
 ///   strike-goldd  model scripts of STRIKE-GOLDD, in MATLAB
+///   petab         problems of parameter estimation (PEtab 1.0, .yaml): a proof file, and beside it a scene for 'observe' with
+///                 its experiments and parameters, and the measurements as CSV
 ///   formulas      what SymPy and CasADi print: x' = e, Eq(Derivative(x(t), t), e), Matrix([[e], [e]]), [e, e], @1=e
 #[derive(Args)]
 #[command(
@@ -33,6 +38,7 @@ const LONGEST_FILE: u64 = 16 << 20;
   palmistry import benchmarks.jl --model Goodwin        one of several @ODEmodel
   palmistry import BIOMD0000000003.xml --output C,M --unknown VM1,VM3
   palmistry import printed.txt --from formulas --state x,y --output x
+  palmistry import problem.yaml --out boehm.toml && palmistry observe boehm.toml
   palmistry import HIV.py --out hiv.proof && palmistry rank hiv.proof --samples 0"
 )]
 pub(crate) struct Import {
@@ -41,7 +47,8 @@ pub(crate) struct Import {
     /// The format of the file, where it is not to be found out.
     #[arg(long, value_enum, value_name = "FORMAT")]
     from: Option<From>,
-    /// Write the proof file here; without it, it is printed.
+    /// Write the proof file here; without it, it is printed. Of a PEtab problem NAME.proof, the scene NAME.toml and the measurements NAME.csv
+    /// are written side by side.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Which of several models, by its name or its number.
@@ -75,19 +82,22 @@ enum From {
     Sbml,
     Strikepy,
     StrikeGoldd,
+    Petab,
     #[value(aliases = ["sympy", "casadi"])]
     Formulas,
 }
 
 impl From {
-    fn format(self) -> ForeignFormat {
-        match self {
+    /// A format of models; none of a problem, which is more than a model.
+    fn format(self) -> Option<ForeignFormat> {
+        Some(match self {
+            From::Petab => return None,
             From::Julia => ForeignFormat::Julia,
             From::Sbml => ForeignFormat::Sbml,
             From::Strikepy => ForeignFormat::StrikePy,
             From::StrikeGoldd => ForeignFormat::StrikeGoldd,
             From::Formulas => ForeignFormat::Formulas,
-        }
+        })
     }
 }
 
@@ -96,6 +106,9 @@ impl Import {
         let shown = name_of(&self.file);
         let text = file::read_text(&self.file, LONGEST_FILE)
             .map_err(|why| Unusable::report(format!("cannot read {shown}: {why}"), ""))?;
+        if matches!(self.from, Some(From::Petab)) || self.from.is_none() && is_petab(&text) {
+            return self.run_petab(&shown, &text);
+        }
         let imported = import(&shown, &text, &self.question())?;
         let mut files = Files::default();
         if let Some(out) = &self.out {
@@ -150,7 +163,7 @@ impl Import {
             _ => ForeignUnknowns::These(unknown),
         };
         ImportQuestion {
-            format: self.from.map(From::format),
+            format: self.from.and_then(From::format),
             model: self.model.clone(),
             outputs: list(&self.output),
             unknowns,
@@ -158,6 +171,110 @@ impl Import {
             unknown_inputs: list(&self.unknown_input),
             states: list(&self.state),
         }
+    }
+}
+
+impl Import {
+    /// A problem of parameter estimation: three files.
+    fn run_petab(self, shown: &str, text: &str) -> miette::Result<Status> {
+        let of_models = [
+            (self.model.is_some(), "--model"),
+            (!self.output.is_empty(), "--output"),
+            (!self.unknown.is_empty(), "--unknown"),
+            (!self.input.is_empty(), "--input"),
+            (!self.unknown_input.is_empty(), "--unknown-input"),
+            (!self.state.is_empty(), "--state"),
+        ];
+        if let Some((_, option)) = of_models.iter().find(|(is_given, _)| *is_given) {
+            let message = format!("{option} is not for a PEtab problem");
+            return Err(Unusable::report(
+                message,
+                "leave it out: its tables say which parameters are sought and what is measured",
+            ));
+        }
+        let folder = self.file.parent().unwrap_or(Path::new("")).to_owned();
+        let load = |name: &str| -> Result<PetabFile, String> {
+            let named = Path::new(name);
+            // a problem of a stranger reads nothing but what lies beside or below it
+            let is_inside = named
+                .components()
+                .all(|part| matches!(part, std::path::Component::Normal(_) | std::path::Component::CurDir));
+            if !is_inside {
+                return Err("it lies outside of the folder of the problem".to_owned());
+            }
+            let path = folder.join(named);
+            let text = file::read_text(&path, LONGEST_FILE).map_err(|why| why.to_string())?;
+            Ok(PetabFile { name: name_of(&path), text })
+        };
+        let stem = match &self.out {
+            Some(out) if out.as_os_str() != "-" => out.clone(),
+            _ => PathBuf::from(&self.file),
+        };
+        let stem_name =
+            stem.file_stem().map_or("problem".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let imported = import_petab(shown, text, &stem_name, &load)?;
+        let mut files = Files::default();
+        let beside = |extension: &str| stem.with_extension(extension);
+        let is_written = self.out.as_ref().is_some_and(|out| out.as_os_str() != "-");
+        if is_written {
+            files.text(&beside("proof"), &imported.proof);
+            files.text(&beside("csv"), &imported.measurements);
+            files.text(&beside("toml"), &imported.scene);
+            files.announce(&beside("toml"));
+        }
+        let [states, parameters, outputs, experiments, measurements] = imported.counts;
+        let object = json!({
+            "file": shown,
+            "format": "petab",
+            "written": is_written.then(|| name_of(&beside("toml"))),
+            "title": imported.title,
+            "proof": imported.proof,
+            "scene": imported.scene,
+            "measurements": imported.measurements,
+            "states": states,
+            "parameters": parameters,
+            "outputs": outputs,
+            "experiments": experiments,
+            "measured": measurements,
+            "renamed": imported.renamed.iter().map(|(from, to)| json!({ "from": from, "to": to })).collect::<Vec<_>>(),
+            "remarks": imported.remarks,
+        });
+        if !self.json {
+            petab_remarks(&imported, is_written);
+        }
+        let words = match is_written {
+            false => imported.proof.trim_end().to_owned(),
+            true => {
+                let count = |number: usize, what: &str| {
+                    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+                };
+                format!(
+                    "petab: {}, {} to be estimated, {}, {}, {}",
+                    count(states, "state"),
+                    count(parameters, "parameter"),
+                    count(outputs, "output"),
+                    count(experiments, "experiment"),
+                    count(measurements, "measurement")
+                )
+            }
+        };
+        files.print(Form::of(self.json), object, || words, Status::AsExpected)
+    }
+}
+
+/// What is worth knowing of a problem.
+fn petab_remarks(imported: &ImportedProblem, is_written: bool) {
+    for remark in &imported.remarks {
+        file::note(&format!("note: {remark}"));
+    }
+    let renamed: Vec<String> = imported.renamed.iter().map(|(from, to)| format!("{from} -> {to}")).collect();
+    if !renamed.is_empty() {
+        file::note(&format!("note: renamed {}", renamed.join(", ")));
+    }
+    if !is_written {
+        file::note(
+            "note: this is the model alone; --out NAME.toml writes its experiments and measurements too",
+        );
     }
 }
 

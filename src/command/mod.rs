@@ -21,6 +21,7 @@ mod lsp;
 mod man;
 mod new;
 mod observe;
+mod observe_joint;
 mod observe_modes;
 mod observe_slow;
 mod observe_space;

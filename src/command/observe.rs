@@ -9,6 +9,7 @@ use super::slow_told::KeptSlow;
 use super::{Status, Unusable};
 use clap::Args;
 use indicatif::ProgressBar;
+use palmistry::experiment::joint::JointScene;
 use palmistry::experiment::slow::SlowScene;
 use palmistry::experiment::space::SpaceScene;
 use palmistry::experiment::{
@@ -104,6 +105,9 @@ impl Observe {
         }
         if let Some(slow) = SlowScene::read(&self.scene) {
             return self.run_slow(slow?, kept);
+        }
+        if let Some(joint) = JointScene::read(&self.scene) {
+            return self.run_joint(joint?);
         }
         let mut scene = Scene::read(&self.scene)?;
         scene.seed = self.seed.unwrap_or(scene.seed);

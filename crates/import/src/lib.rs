@@ -15,6 +15,7 @@ mod functions;
 mod julia;
 mod model;
 mod names;
+mod petab;
 mod print;
 mod sbml;
 mod script;
@@ -25,6 +26,7 @@ mod write;
 pub use expression::{FUNCTIONS, ForeignExpr, ForeignKind, ForeignOrder};
 pub use formulas::PrintedRoles;
 pub use model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate, ForeignUnknowns};
+pub use petab::{ImportedProblem, PetabFile, PetabLoader, import_petab, is_petab};
 
 use palmistry_io::foreign::{Allowance, Budget, Spent};
 use palmistry_lang::{Problem, ReadError, System, with_plain_line_ends};

@@ -13,6 +13,7 @@ mod document;
 mod drawing;
 mod formula;
 mod inline_hash;
+mod joint;
 mod layout;
 mod motion;
 mod moved_body;
@@ -53,6 +54,8 @@ pub use claims::{
 #[doc(hidden)]
 pub use formula::definition_mathml;
 pub use formula::{expression_latex, formula_mathml, statement_latex};
+#[doc(hidden)]
+pub use joint::{JointObserved, joint_json, joint_page, joint_parameters, joint_simulation, joint_text};
 #[doc(hidden)]
 pub use layout::Colour;
 pub use layout::Layout;

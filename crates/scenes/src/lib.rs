@@ -13,6 +13,8 @@ mod advice;
 mod channels;
 mod columns;
 mod groundwork;
+#[doc(hidden)]
+pub mod joint;
 mod known_motion;
 mod mirrored;
 mod modes;

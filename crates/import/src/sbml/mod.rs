@@ -19,8 +19,20 @@ use roxmltree::Node;
 use std::collections::{BTreeMap, BTreeSet};
 use xml::{child, document, elements, is, listed, place, required, says};
 
+/// A model with the values of its states at the start.
+pub(super) struct Started {
+    pub model: ForeignModel,
+    /// By state, where the file says so: a formula of constants, definitions and the starts of other states. That of time is zero.
+    pub starts: Vec<(String, ForeignExpr)>,
+}
+
 /// Reads a model.
 pub(super) fn read(text: &str, budget: &Budget) -> Result<ForeignModel, Problem> {
+    Ok(read_started(text, budget)?.model)
+}
+
+/// Reads a model with its initial values.
+pub(super) fn read_started(text: &str, budget: &Budget) -> Result<Started, Problem> {
     let document = document(text, budget)?;
     let root = document.root_element();
     if !is(root, "sbml") {
@@ -37,7 +49,14 @@ pub(super) fn read(text: &str, budget: &Budget) -> Result<ForeignModel, Problem>
         Problem::new(&place(root), "the file has no model", "this").help("an SBML file has <model> in it")
     })?;
     refuse(model)?;
-    Reading::of(model, level == "3", budget)?.model(model)
+    let reading = Reading::of(model, level == "3", budget)?;
+    let given = reading.starts();
+    let model = reading.model(model)?;
+    let start = |name: &String| Some((name.clone(), given.get(name)?.clone()));
+    let mut starts: Vec<(String, ForeignExpr)> =
+        model.states.iter().filter_map(|state| start(&state.name)).collect();
+    starts.extend(model.clock.iter().map(|clock| (clock.clone(), ForeignExpr::integer(0, &(0..0)))));
+    Ok(Started { model, starts })
 }
 
 /// What changes the meaning of a model and is not read.
@@ -224,6 +243,23 @@ impl<'b> Reading<'b> {
             reading.reactions.push(reaction);
         }
         Ok(reading)
+    }
+
+    /// What species, sizes and parameters are at the start: by an assignment, else by a number.
+    fn starts(&self) -> BTreeMap<String, ForeignExpr> {
+        let number = |value: RBig| ForeignExpr::new(super::expression::ForeignKind::Number(value), &(0..0));
+        let mut starts = BTreeMap::new();
+        for one in &self.species {
+            let size = self.compartment(&one.compartment).and_then(|own| own.size.as_ref());
+            starts.extend(one.beginning(size).map(|value| (one.id.clone(), number(value))));
+        }
+        let sizes = self.compartments.iter().map(|one| (&one.id, &one.size));
+        let parameters = self.parameters.iter().map(|(id, value)| (id, value));
+        for (id, value) in sizes.chain(parameters) {
+            starts.extend(value.clone().map(|value| (id.clone(), number(value))));
+        }
+        starts.extend(self.beginnings.iter().cloned());
+        starts
     }
 
     fn math(&self, node: Node<'_, '_>) -> Result<ForeignExpr, Problem> {

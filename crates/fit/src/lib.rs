@@ -1,0 +1,27 @@
+//! Several experiments explained by one set of parameters: simulation with exact derivatives, maximum likelihood, what the measurements tell.
+//!
+//! A [`JointProblem`] is experiments (rates and initial states under their own settings), measurements with the law of their errors, and the parameters that
+//! are sought. [`Likelihood`] simulates it at some parameters, stiff or not, with its sensitivities; [`fit`] searches the largest likelihood from
+//! many starts; [`Information`] says what the measurements tell of which parameter, and [`profile`] how far each could be moved.
+//!
+//! This floor knows systems and numbers; it knows neither scenes nor files.
+
+#![warn(missing_docs)]
+
+mod compiled;
+mod information;
+mod laws;
+mod likelihood;
+mod problem;
+mod profile;
+mod search;
+mod simulate;
+mod trust;
+
+pub use information::{Information, WeakDirection};
+pub use laws::{ErrorLaw, ErrorScale, ParameterScale, Prior, PriorLaw};
+pub use likelihood::{Likelihood, Simulated};
+pub use problem::{JointExperiment, JointMeasurement, JointProblem, Phase, SoughtParameter};
+pub use profile::{ParameterProfile, profile};
+pub use search::{JointFit, SearchEnd, StartEnd, fit};
+pub use simulate::{Exactness, NotFollowed};

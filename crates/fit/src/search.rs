@@ -1,0 +1,271 @@
+//! The largest likelihood, from many starts.
+
+use super::likelihood::{Likelihood, Simulated};
+use super::simulate::{Exactness, NotFollowed};
+use super::trust::{Scoring, Search};
+use argmin::core::{Executor, State};
+use nalgebra::DVector;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+/// Every other search begins at the best of so many draws that can be simulated, the others at the first one: the best draw is often one at which nothing
+/// happens that could be measured, and from there nothing is found.
+const CANDIDATES: usize = 8;
+
+/// After the searches, so many more begin near the best end, and again as long as one of them finds a better one.
+const KICKS: usize = 10;
+const ROUNDS: usize = 6;
+
+/// So far from it, in decades, or in parts of the range on a linear scale: as standard deviations, one a search.
+const KICK: [f64; 2] = [0.3, 1.0];
+
+/// So many draws are tried at most.
+const DRAWS: usize = 50;
+
+/// So many steps are made from the end of the best search, simulated as answers are.
+const LAST_STEPS: u64 = 50;
+
+/// Two ends are one optimum whose logarithms of the likelihood differ by less than this.
+const SAME: f64 = 0.1;
+
+/// How a search ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StartEnd {
+    /// No step raises the likelihood by anything that counts.
+    Converged,
+    /// Its steps are spent: the likelihood still grows.
+    StepsSpent,
+    /// No step raises the likelihood, although its slope says so.
+    Stuck,
+    /// No start could be simulated; why the last could not.
+    NoStart(String),
+    /// Somebody wanted an end.
+    Interrupted,
+}
+
+/// A search from one start.
+#[derive(Clone, Debug)]
+pub struct SearchEnd {
+    /// Where it began, on the scales of the parameters.
+    pub start: Vec<f64>,
+    /// Where it ended.
+    pub found: Vec<f64>,
+    /// Minus the logarithm of the likelihood there, priors included.
+    pub objective: f64,
+    /// How many steps were made.
+    pub steps: u64,
+    /// How it ended.
+    pub end: StartEnd,
+}
+
+/// What searches from many starts came to.
+#[derive(Clone, Debug)]
+pub struct JointFit {
+    /// All searches, in the order of their starts.
+    pub searches: Vec<SearchEnd>,
+    /// The place of the best among them.
+    pub best: usize,
+    /// What is expected at the best.
+    pub simulated: Simulated,
+}
+
+impl JointFit {
+    /// The search that came farthest.
+    pub fn best(&self) -> &SearchEnd {
+        &self.searches[self.best]
+    }
+
+    /// How many searches came to the best end, that one included.
+    pub fn arrived(&self) -> usize {
+        let least = self.best().objective;
+        self.searches.iter().filter(|one| one.objective <= least + SAME).count()
+    }
+}
+
+/// Searches from random starts within the bounds, evenly on the scales of the parameters; one start with one seed is the same on any number of threads.
+///
+/// # Errors
+/// Why none of the starts could be simulated.
+pub fn fit(
+    likelihood: &Likelihood,
+    starts: usize,
+    steps: u64,
+    seed: u64,
+    interrupted: &(dyn Fn() -> bool + Sync),
+    done: &(dyn Fn() + Sync),
+) -> Result<JointFit, String> {
+    let one = |number: usize| {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        random.set_stream(number as u64);
+        let wanted = if number % 2 == 0 { 1 } else { CANDIDATES };
+        let found = from_draws(likelihood, &mut random, (steps, wanted), interrupted);
+        done();
+        found
+    };
+    let mut searches: Vec<SearchEnd> = (0..starts).into_par_iter().map(one).collect();
+    for round in 0..ROUNDS {
+        let Some(best) = least(&searches).filter(|_| !interrupted()) else { break };
+        let (objective, found) = (best.objective, best.found.clone());
+        let one = |number: usize| {
+            let mut random = ChaCha8Rng::seed_from_u64(seed);
+            random.set_stream((starts + round * KICKS + number) as u64);
+            from_near(likelihood, &mut random, &found, steps, interrupted)
+        };
+        let kicked: Vec<SearchEnd> = (0..KICKS).into_par_iter().map(one).collect();
+        let is_better = kicked.iter().any(|one| one.objective < objective - SAME);
+        searches.extend(kicked);
+        if !is_better {
+            break;
+        }
+    }
+    best_of(likelihood, searches, interrupted)
+}
+
+/// The search that came farthest.
+fn least(searches: &[SearchEnd]) -> Option<&SearchEnd> {
+    let by_objective = |a: &&SearchEnd, b: &&SearchEnd| a.objective.total_cmp(&b.objective);
+    searches.iter().filter(|one| one.objective.is_finite()).min_by(by_objective)
+}
+
+/// A search from near a place.
+fn from_near(
+    likelihood: &Likelihood,
+    random: &mut ChaCha8Rng,
+    place: &[f64],
+    steps: u64,
+    interrupted: &(dyn Fn() -> bool + Sync),
+) -> SearchEnd {
+    let mut why = String::new();
+    for _ in 0..DRAWS {
+        let size = KICK[0] + random.random::<f64>() * (KICK[1] - KICK[0]);
+        let kicked = |(one, place): (&super::SoughtParameter, &f64)| {
+            let [low, high] = one.scaled_bounds();
+            let unit = match one.scale {
+                super::ParameterScale::Linear => (high - low) / 8.0,
+                super::ParameterScale::Log => std::f64::consts::LN_10,
+                super::ParameterScale::Log10 => 1.0,
+            };
+            // by Box and Muller
+            let [a, b] = [random.random::<f64>(), random.random::<f64>()];
+            let normal = (-2.0 * (1.0 - a).ln()).sqrt() * (std::f64::consts::TAU * b).cos();
+            (place + normal * size * unit).clamp(low, high)
+        };
+        let start: Vec<f64> = likelihood.problem().parameters.iter().zip(place).map(kicked).collect();
+        match likelihood.at(&start, Exactness::Search, &|| interrupted()) {
+            Ok(here) => {
+                return search(likelihood, &start, here, &[], (steps, Exactness::Search), interrupted);
+            }
+            Err(NotFollowed::Interrupted) => return ended(start, StartEnd::Interrupted),
+            Err(error) => why = error.to_string(),
+        }
+    }
+    ended(Vec::new(), StartEnd::NoStart(why))
+}
+
+/// The best of some searches, followed to its end.
+fn best_of(
+    likelihood: &Likelihood,
+    mut searches: Vec<SearchEnd>,
+    interrupted: &(dyn Fn() -> bool + Sync),
+) -> Result<JointFit, String> {
+    let Some(place) =
+        least(&searches).and_then(|best| searches.iter().position(|one| one.objective == best.objective))
+    else {
+        let why = searches.first().map(|one| match &one.end {
+            StartEnd::NoStart(why) => why.clone(),
+            _ => "interrupted".to_owned(),
+        });
+        return Err(why.unwrap_or_else(|| "no start was asked for".to_owned()));
+    };
+    let best = &mut searches[place];
+    let simulate =
+        |found: &[f64]| likelihood.at(found, Exactness::Answer, &|| false).map_err(|why| why.to_string());
+    let here = simulate(&best.found)?;
+    let last = search(likelihood, &best.found, here, &[], (LAST_STEPS, Exactness::Answer), interrupted);
+    best.steps += last.steps;
+    best.objective = last.objective;
+    best.found = last.found;
+    if last.end != StartEnd::Interrupted {
+        best.end = last.end;
+    }
+    let simulated = simulate(&best.found)?;
+    Ok(JointFit { searches, best: place, simulated })
+}
+
+fn from_draws(
+    likelihood: &Likelihood,
+    random: &mut ChaCha8Rng,
+    (steps, wanted): (u64, usize),
+    interrupted: &(dyn Fn() -> bool + Sync),
+) -> SearchEnd {
+    let parameters = &likelihood.problem().parameters;
+    let mut why = "no draw was made".to_owned();
+    let mut best: Option<(Vec<f64>, Simulated)> = None;
+    let mut candidates = 0;
+    for _ in 0..DRAWS {
+        let draw = |one: &super::SoughtParameter| {
+            let [low, high] = one.scaled_bounds();
+            let [from, to] = one.starts.map_or([low, high], |range| range.map(|end| one.scale.scaled(end)));
+            (from + random.random::<f64>() * (to - from)).clamp(low, high)
+        };
+        let start: Vec<f64> = parameters.iter().map(draw).collect();
+        match likelihood.at(&start, Exactness::Search, &|| interrupted()) {
+            Ok(here) => {
+                candidates += 1;
+                if best.as_ref().is_none_or(|(_, known)| here.objective < known.objective) {
+                    best = Some((start, here));
+                }
+            }
+            Err(NotFollowed::Interrupted) => return ended(start, StartEnd::Interrupted),
+            Err(error) => why = error.to_string(),
+        }
+        if candidates == wanted {
+            break;
+        }
+    }
+    match best {
+        Some((start, here)) => search(likelihood, &start, here, &[], (steps, Exactness::Search), interrupted),
+        None => ended(Vec::new(), StartEnd::NoStart(why)),
+    }
+}
+
+fn ended(start: Vec<f64>, end: StartEnd) -> SearchEnd {
+    SearchEnd { found: start.clone(), start, objective: f64::INFINITY, steps: 0, end }
+}
+
+/// A search from a start whose simulation is known, with some parameters held at their places.
+pub(super) fn search(
+    likelihood: &Likelihood,
+    start: &[f64],
+    here: Simulated,
+    held: &[usize],
+    (steps, exactness): (u64, Exactness),
+    interrupted: &(dyn Fn() -> bool + Sync),
+) -> SearchEnd {
+    let parameters = &likelihood.problem().parameters;
+    let bounds = parameters.iter().enumerate().map(|(place, one)| match held.contains(&place) {
+        true => [start[place]; 2],
+        false => one.scaled_bounds(),
+    });
+    let problem = Search { likelihood, bounds: bounds.collect(), exactness, interrupted };
+    let objective = here.objective;
+    let run = Executor::new(problem, Scoring::from(here))
+        .configure(|state| state.param(DVector::from_column_slice(start)).cost(objective).max_iters(steps))
+        .ctrlc(false)
+        .run();
+    match run {
+        Ok(result) => {
+            let end = match (result.solver.converged, result.solver.stuck) {
+                (true, _) => StartEnd::Converged,
+                (_, true) => StartEnd::Stuck,
+                _ => StartEnd::StepsSpent,
+            };
+            let found =
+                result.state.get_best_param().map_or(start.to_vec(), |found| found.as_slice().to_vec());
+            let objective = result.state.get_best_cost();
+            SearchEnd { start: start.to_vec(), found, objective, steps: result.state.get_iter(), end }
+        }
+        Err(_) => SearchEnd { objective, ..ended(start.to_vec(), StartEnd::Interrupted) },
+    }
+}

@@ -1,0 +1,108 @@
+//! The tables of a PEtab problem: tab-separated text with a row of names.
+
+use super::PetabFile;
+use palmistry_lang::{Problem, ReadError};
+use std::collections::BTreeMap;
+
+/// A row, its cells by the names of their columns, and where it stands in the file, in bytes.
+pub(super) struct Row {
+    cells: BTreeMap<String, String>,
+    place: std::ops::Range<usize>,
+}
+
+/// A table with the file that it was read from.
+pub(super) struct Table<'f> {
+    pub file: &'f PetabFile,
+    pub columns: Vec<String>,
+    pub rows: Vec<Row>,
+}
+
+impl Row {
+    /// The cell of a column, without blanks around it; none where it is empty.
+    pub fn cell(&self, column: &str) -> Option<&str> {
+        self.cells.get(column).map(String::as_str).filter(|cell| !cell.is_empty())
+    }
+}
+
+impl<'f> Table<'f> {
+    /// Reads a table that has these columns.
+    ///
+    /// # Errors
+    /// Where it is no table, or lacks a column.
+    pub fn read(file: &'f PetabFile, needed: &[&str]) -> Result<Table<'f>, ReadError> {
+        let problem = |message: String, place: std::ops::Range<usize>, help: &str| {
+            Problem::new(&place, message, "here").help(help).locate(&file.name, &file.text)
+        };
+        let mut reader = csv::ReaderBuilder::new()
+            .delimiter(b'\t')
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .from_reader(file.text.as_bytes());
+        let head = reader.headers().map_err(|why| {
+            problem(
+                format!("the table cannot be read: {why}"),
+                0..0,
+                "a table is text, its cells apart by tabs",
+            )
+        })?;
+        let columns: Vec<String> = head.iter().map(str::to_owned).collect();
+        if let Some(missing) = needed.iter().find(|name| !columns.iter().any(|own| own == *name)) {
+            let first = file.text.lines().next().map_or(0, str::len);
+            return Err(problem(
+                format!("the table has no column '{missing}'"),
+                0..first,
+                "the first line names the columns, apart by tabs; PEtab 1.0 says which there have to be",
+            ));
+        }
+        let mut rows = Vec::new();
+        for record in reader.records() {
+            let record = record.map_err(|why| {
+                problem(
+                    format!("the table cannot be read: {why}"),
+                    0..0,
+                    "a table is text, its cells apart by tabs",
+                )
+            })?;
+            let start = record.position().map_or(0, |place| place.byte() as usize).min(file.text.len());
+            let end = file.text[start..].find('\n').map_or(file.text.len(), |length| start + length);
+            if record.iter().all(str::is_empty) {
+                continue;
+            }
+            if record.len() > columns.len() {
+                return Err(problem(
+                    format!("this row has {} cells, and the table {} columns", record.len(), columns.len()),
+                    start..end,
+                    "take the rest out, or name its columns",
+                ));
+            }
+            let cells = columns.iter().cloned().zip(record.iter().map(str::to_owned)).collect();
+            rows.push(Row { cells, place: start..end });
+        }
+        Ok(Table { file, columns, rows })
+    }
+
+    /// A mistake in a row.
+    pub fn error(&self, row: &Row, message: impl Into<String>, help: impl Into<String>) -> ReadError {
+        Problem::new(&row.place, message, "in this row").help(help).locate(&self.file.name, &self.file.text)
+    }
+
+    /// The cell of a column that a row has to have.
+    ///
+    /// # Errors
+    /// It is empty.
+    pub fn needed<'r>(&self, row: &'r Row, column: &str) -> Result<&'r str, ReadError> {
+        row.cell(column).ok_or_else(|| self.error(row, format!("the row has no '{column}'"), "fill it in"))
+    }
+
+    /// A number in a cell that a row has to have.
+    ///
+    /// # Errors
+    /// It is empty, or no finite number.
+    pub fn number(&self, row: &Row, column: &str) -> Result<f64, ReadError> {
+        let text = self.needed(row, column)?;
+        let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+        value.ok_or_else(|| {
+            self.error(row, format!("'{text}' is no number"), format!("'{column}' is a decimal"))
+        })
+    }
+}

@@ -1,0 +1,385 @@
+//! What several experiments tell together: text, JSON, tables, and a page with what was measured beside what is expected.
+
+mod page;
+mod plot;
+mod tables;
+
+pub use page::joint_page;
+use palmistry_fit::{ParameterProfile, ParameterScale, Simulated, SoughtParameter, StartEnd};
+use palmistry_scenes::joint::{JointAnswer, JointExperiments};
+use serde_json::{Value, json};
+use std::fmt::Write;
+pub use tables::{joint_parameters, joint_simulation};
+
+/// A fit and what it was made from.
+#[derive(Clone, Copy)]
+pub struct JointObserved<'a> {
+    /// The scene with its measurements.
+    pub experiments: &'a JointExperiments,
+    /// What came of it.
+    pub answer: &'a JointAnswer,
+    /// Whether somebody ended it early.
+    pub interrupted: bool,
+}
+
+/// A parameter of which two deviations to both sides are more than this part of its range is not told by the measurements.
+const UNTOLD: f64 = 0.5;
+
+/// What is known of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Standing {
+    Told,
+    Untold,
+    AtBound,
+}
+
+impl Standing {
+    fn word(self) -> &'static str {
+        match self {
+            Standing::Told => "determined",
+            Standing::Untold => "not determined",
+            Standing::AtBound => "at a bound",
+        }
+    }
+}
+
+/// The best value of a parameter.
+struct Entry<'a> {
+    parameter: &'a SoughtParameter,
+    scaled: f64,
+    /// On its scale.
+    deviation: Option<f64>,
+    standing: Standing,
+    profile: Option<&'a ParameterProfile>,
+}
+
+impl Entry<'_> {
+    fn value(&self) -> f64 {
+        self.parameter.scale.value(self.scaled)
+    }
+
+    /// The ends of the interval of 95 % by the profile, as values.
+    fn interval(&self) -> Option<[Option<f64>; 2]> {
+        self.profile.map(|own| own.interval.map(|end| end.map(|end| self.parameter.scale.value(end))))
+    }
+}
+
+fn entries<'a>(observed: &JointObserved<'a>) -> Vec<Entry<'a>> {
+    let Some(Ok(fit)) = &observed.answer.fit else { return Vec::new() };
+    let entry = |(place, parameter): (usize, &'a SoughtParameter)| {
+        let deviation =
+            observed.answer.information.as_ref().and_then(|own| own.deviations.get(place).copied().flatten());
+        let [low, high] = parameter.scaled_bounds();
+        let standing = match deviation {
+            _ if observed.answer.at_bounds.get(place) == Some(&true) => Standing::AtBound,
+            Some(deviation) if 4.0 * deviation <= UNTOLD * (high - low) => Standing::Told,
+            _ => Standing::Untold,
+        };
+        Entry {
+            parameter,
+            scaled: fit.best().found[place],
+            deviation,
+            standing,
+            profile: observed.answer.profiles.iter().find(|own| own.parameter == place),
+        }
+    };
+    observed.experiments.problem().parameters.iter().enumerate().map(entry).collect()
+}
+
+/// A number of four digits.
+fn short(value: f64) -> String {
+    match value.abs() {
+        size if value == 0.0 || (1e-3..1e5).contains(&size) => {
+            let decimals = (3.0 - size.max(1e-300).log10().floor()).clamp(0.0, 6.0) as usize;
+            format!("{value:.decimals$}")
+        }
+        _ => format!("{value:.3e}"),
+    }
+}
+
+/// A value with its deviation: on a logarithmic scale by a factor.
+fn with_deviation(entry: &Entry<'_>) -> String {
+    let spread = match (entry.deviation, entry.parameter.scale) {
+        (None, _) => return String::new(),
+        (Some(deviation), _) if !deviation.is_finite() => return "infinite".to_owned(),
+        (Some(deviation), ParameterScale::Linear) => return format!("+- {}", short(deviation)),
+        (Some(deviation), ParameterScale::Log) => deviation,
+        (Some(deviation), ParameterScale::Log10) => deviation * std::f64::consts::LN_10,
+    };
+    match spread {
+        small if small < 0.2 => format!("+- {:.2} %", 100.0 * small),
+        _ if spread < 7.0 => format!("*/ {:.2}", spread.exp()),
+        _ => format!("*/ 1e{:.0}", spread / std::f64::consts::LN_10),
+    }
+}
+
+/// A direction in words: the parameters that take part, on their scales.
+fn direction_words(observed: &JointObserved<'_>, parts: &[(usize, f64)]) -> String {
+    let parameters = &observed.experiments.problem().parameters;
+    let one = |(place, part): &(usize, f64)| {
+        let parameter = &parameters[*place];
+        let name = match parameter.scale {
+            ParameterScale::Linear => parameter.name.clone(),
+            scale => format!("{}({})", scale.word(), parameter.name),
+        };
+        format!("{part:+.2} {name}")
+    };
+    let all: Vec<String> = parts.iter().take(6).map(one).collect();
+    let rest = if parts.len() > 6 { " ..." } else { "" };
+    format!("{}{rest}", all.join(" "))
+}
+
+/// Directions that are told by no more than half of a decade, or a unit of a linear scale, the worst first.
+fn weak<'a>(observed: &JointObserved<'a>) -> Vec<&'a palmistry_fit::WeakDirection> {
+    let Some(information) = &observed.answer.information else { return Vec::new() };
+    information.directions.iter().filter(|one| one.deviation > 0.5).take(5).collect()
+}
+
+fn count(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+}
+
+fn end_word(end: &StartEnd) -> &'static str {
+    match end {
+        StartEnd::Converged => "converged",
+        StartEnd::StepsSpent => "steps spent",
+        StartEnd::Stuck => "stuck",
+        StartEnd::NoStart(_) => "no start",
+        StartEnd::Interrupted => "interrupted",
+    }
+}
+
+/// What was fitted, in a line.
+fn heading(observed: &JointObserved<'_>) -> String {
+    let problem = observed.experiments.problem();
+    let outputs: std::collections::BTreeSet<&str> =
+        problem.measurements.iter().map(|one| one.output.as_str()).collect();
+    format!(
+        "{} of {} in {}; {}",
+        count(problem.measurements.len(), "measurement"),
+        count(outputs.len(), "output"),
+        count(problem.experiments.len(), "experiment"),
+        count(problem.parameters.len(), "parameter")
+    )
+}
+
+/// What the searches came to, in sentences.
+fn ending(observed: &JointObserved<'_>) -> Vec<String> {
+    let mut lines = Vec::new();
+    if let Some(nominal) = &observed.answer.nominal {
+        lines.push(match &nominal.simulated {
+            Ok(found) => format!(
+                "at the nominal values: log-likelihood {:.4}, chi-square {}",
+                found.log_likelihood,
+                short(found.chi_square)
+            ),
+            Err(why) => format!("at the nominal values nothing can be expected: {why}"),
+        });
+    }
+    match &observed.answer.fit {
+        None => {}
+        Some(Err(why)) => lines.push(format!("nothing was found: {why}")),
+        Some(Ok(fit)) => {
+            lines.push(format!(
+                "best of {}: log-likelihood {:.4}, chi-square {}; {} of {} come to it (within 0.1)",
+                count(fit.searches.len(), "search").replace("searchs", "searches"),
+                fit.simulated.log_likelihood,
+                short(fit.simulated.chi_square),
+                fit.arrived(),
+                fit.searches.len()
+            ));
+            if fit.best().end != StartEnd::Converged {
+                lines.push(format!(
+                    "the best search did not converge ({}): ask for more steps under [search]",
+                    end_word(&fit.best().end)
+                ));
+            }
+            if fit.arrived() == 1 && fit.searches.len() > 1 {
+                lines.push("only one search came there: ask for more starts under [search]".to_owned());
+            }
+            lines.push(match &observed.answer.goodness {
+                Some(own) => format!(
+                    "chi-square test: {} with {} degrees of freedom; chance leaves more with probability {:.2e}: {}",
+                    short(own.chi_square),
+                    own.degrees,
+                    own.probability,
+                    if own.fits() { "the model explains the measurements" } else { "the model does not explain them" }
+                ),
+                None => "no test of fit: the size of the errors is sought, or they are not normal, or there are priors".to_owned(),
+            });
+        }
+    }
+    lines
+}
+
+/// The answer as text.
+pub fn joint_text(observed: &JointObserved<'_>) -> String {
+    let mut out = String::new();
+    let _ = writeln!(out, "{}\n{}", observed.experiments.scene.title, heading(observed));
+    for line in ending(observed) {
+        let _ = writeln!(out, "{line}");
+    }
+    let all = entries(observed);
+    if !all.is_empty() {
+        let width = all.iter().map(|entry| entry.parameter.name.chars().count()).max().unwrap_or(0).max(9);
+        let has_profiles = all.iter().any(|entry| entry.profile.is_some());
+        let _ = writeln!(out, "\n  {:width$}  {:>12}  {:>14}  {}", "parameter", "value", "deviation", "");
+        for entry in &all {
+            let _ = write!(
+                out,
+                "  {:width$}  {:>12}  {:>14}  {}",
+                entry.parameter.name,
+                short(entry.value()),
+                with_deviation(entry),
+                entry.standing.word()
+            );
+            if has_profiles && let Some([low, high]) = entry.interval() {
+                let end = |end: Option<f64>| end.map_or("open".to_owned(), short);
+                let _ = write!(out, "; 95 %: {} to {}", end(low), end(high));
+            }
+            out.push('\n');
+        }
+        let weak = weak(observed);
+        if !weak.is_empty() {
+            let _ = writeln!(
+                out,
+                "\ndirections that the measurements hardly determine (unit steps on the scales):"
+            );
+            for one in weak {
+                let deviation =
+                    if one.deviation.is_finite() { short(one.deviation) } else { "infinite".to_owned() };
+                let _ = writeln!(out, "  deviation {deviation}: {}", direction_words(observed, &one.parts));
+            }
+        }
+    }
+    if observed.interrupted {
+        let _ = writeln!(out, "\ninterrupted: this is what was found until then");
+    }
+    out.trim_end().to_owned()
+}
+
+/// A number of JSON; none where it is no finite one.
+fn finite(value: f64) -> Value {
+    if value.is_finite() { json!(value) } else { Value::Null }
+}
+
+fn measurements_json(observed: &JointObserved<'_>, simulated: &Simulated) -> Value {
+    let problem = observed.experiments.problem();
+    let rows = problem.measurements.iter().enumerate().map(|(row, one)| {
+        json!({
+            "experiment": problem.experiments[one.experiment].name,
+            "output": one.output,
+            "time": finite(one.time),
+            "value": one.value,
+            "expected": simulated.expected[row],
+            "deviation": simulated.sizes[row],
+            "residual": simulated.residuals[row],
+        })
+    });
+    Value::Array(rows.collect())
+}
+
+fn simulated_json(observed: &JointObserved<'_>, simulated: &Simulated) -> Value {
+    json!({
+        "log_likelihood": simulated.log_likelihood,
+        "objective": simulated.objective,
+        "chi_square": simulated.chi_square,
+        "measurements": measurements_json(observed, simulated),
+    })
+}
+
+/// The answer as JSON.
+pub fn joint_json(observed: &JointObserved<'_>) -> Value {
+    let problem = observed.experiments.problem();
+    let answer = observed.answer;
+    let parameters: Vec<Value> = entries(observed)
+        .iter()
+        .map(|entry| {
+            json!({
+                "name": entry.parameter.name,
+                "scale": entry.parameter.scale.word(),
+                "bounds": entry.parameter.bounds,
+                "nominal": entry.parameter.nominal,
+                "value": entry.value(),
+                "scaled": entry.scaled,
+                "deviation": entry.deviation.map(finite),
+                "standing": entry.standing.word(),
+                "interval": entry.interval().map(|ends| ends.map(|end| end.map(finite))),
+            })
+        })
+        .collect();
+    let nominal = answer.nominal.as_ref().map(|own| match &own.simulated {
+        Ok(found) => simulated_json(observed, found),
+        Err(why) => json!({ "why_not": why }),
+    });
+    let (best, searches, why_not) = match &answer.fit {
+        None => (Value::Null, Vec::new(), Value::Null),
+        Some(Err(why)) => (Value::Null, Vec::new(), json!(why)),
+        Some(Ok(fit)) => {
+            let mut best = simulated_json(observed, &fit.simulated);
+            let free = answer.at_bounds.iter().filter(|is_at| !**is_at).count() as f64;
+            best["arrived"] = json!(fit.arrived());
+            best["aic"] = json!(2.0 * problem.parameters.len() as f64 - 2.0 * fit.simulated.log_likelihood);
+            best["bic"] = json!(
+                (problem.measurements.len() as f64).ln() * problem.parameters.len() as f64
+                    - 2.0 * fit.simulated.log_likelihood
+            );
+            best["parameters_off_bounds"] = json!(free);
+            let searches = fit.searches.iter().map(|one| {
+                json!({
+                    "objective": finite(one.objective),
+                    "steps": one.steps,
+                    "end": end_word(&one.end),
+                    "start": one.start,
+                    "found": one.found,
+                })
+            });
+            (best, searches.collect(), Value::Null)
+        }
+    };
+    let directions: Vec<Value> = answer
+        .information
+        .iter()
+        .flat_map(|own| &own.directions)
+        .map(|one| {
+            let parts: serde_json::Map<String, Value> = one
+                .parts
+                .iter()
+                .map(|(place, part)| (problem.parameters[*place].name.clone(), json!(part)))
+                .collect();
+            json!({ "deviation": finite(one.deviation), "parts": parts })
+        })
+        .collect();
+    let profiles: Vec<Value> = answer
+        .profiles
+        .iter()
+        .map(|own| {
+            json!({
+                "parameter": problem.parameters[own.parameter].name,
+                "points": own.points,
+                "interval": own.interval.map(|end| end.map(finite)),
+                "cut_off": own.cut_off,
+                "better_by": own.better,
+            })
+        })
+        .collect();
+    json!({
+        "title": observed.experiments.scene.title,
+        "kind": "experiments",
+        "experiments": problem.experiments.iter().map(|one| &one.name).collect::<Vec<_>>(),
+        "parameters": parameters,
+        "nominal": nominal,
+        "best": best,
+        "why_not": why_not,
+        "searches": searches,
+        "goodness_of_fit": answer.goodness.map(|own| json!({
+            "chi_square": own.chi_square,
+            "degrees": own.degrees,
+            "probability": own.probability,
+            "fits": own.fits(),
+        })),
+        "directions": directions,
+        "profiles": profiles,
+        "interrupted": observed.interrupted,
+    })
+}

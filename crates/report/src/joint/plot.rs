@@ -1,0 +1,180 @@
+//! Pictures of a fit: what was measured beside what is expected, the ends of all searches, profiles.
+
+use super::JointObserved;
+use crate::axis::number;
+use crate::drawing::{INK, MESH, svg};
+use palmistry_fit::{ParameterProfile, ParameterScale, Simulated};
+use plotters::prelude::*;
+
+const MEASURED: RGBColor = RGBColor(0, 114, 178);
+const EXPECTED: RGBColor = RGBColor(213, 94, 0);
+const OTHER: RGBColor = RGBColor(120, 120, 120);
+
+/// More curves than these are in the JSON only.
+pub(super) const MOST_PICTURES: usize = 24;
+
+/// A range with some room around it.
+fn around(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (low, high) = values
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    match high - low {
+        span if span > 0.0 => (low - 0.06 * span, high + 0.06 * span),
+        _ if low.is_finite() => (low - 0.5 * low.abs().max(1.0), high + 0.5 * high.abs().max(1.0)),
+        _ => (0.0, 1.0),
+    }
+}
+
+/// An output of an experiment: points with two deviations of their errors, and what is expected at those times.
+pub(super) fn compared(
+    observed: &JointObserved<'_>,
+    simulated: &Simulated,
+    experiment: usize,
+    output: &str,
+) -> String {
+    let problem = observed.experiments.problem();
+    let mut rows: Vec<(f64, f64, f64, f64)> = problem
+        .measurements
+        .iter()
+        .enumerate()
+        .filter(|(_, one)| one.experiment == experiment && one.output == output && one.time.is_finite())
+        .map(|(row, one)| (one.time, one.value, simulated.expected[row], simulated.sizes[row]))
+        .collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let is_log = problem
+        .measurements
+        .iter()
+        .any(|one| one.output == output && one.scale != palmistry_fit::ErrorScale::Linear);
+    let place = |value: f64| if is_log { value.log10() } else { value };
+    let bar = |measured: f64, size: f64| -> [f64; 2] {
+        match problem.measurements.iter().find(|one| one.output == output).map(|one| one.scale) {
+            Some(palmistry_fit::ErrorScale::Log) => {
+                let half = 2.0 * size / std::f64::consts::LN_10;
+                [place(measured) - half, place(measured) + half]
+            }
+            Some(palmistry_fit::ErrorScale::Log10) => {
+                [place(measured) - 2.0 * size, place(measured) + 2.0 * size]
+            }
+            _ => [measured - 2.0 * size, measured + 2.0 * size],
+        }
+    };
+    let (left, right) = around(rows.iter().map(|row| row.0));
+    let (low, high) =
+        around(rows.iter().flat_map(|row| [place(row.1), place(row.2)].into_iter().chain(bar(row.1, row.3))));
+    let title = format!("{output}, {}", problem.experiments[experiment].name);
+    let (across, up) = (right - left, high - low);
+    svg((420, 260), &title, |area| {
+        let mut chart = ChartBuilder::on(area)
+            .caption(&title, ("sans-serif", 13).into_font().color(&INK))
+            .margin(8)
+            .margin_right(16)
+            .x_label_area_size(34)
+            .y_label_area_size(crate::axis::room((low, high), |v| number(v, up)))
+            .build_cartesian_2d(left..right, low..high)?;
+        chart
+            .configure_mesh()
+            .light_line_style(WHITE)
+            .bold_line_style(MESH)
+            .x_labels(6)
+            .y_labels(6)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
+            .x_label_formatter(&|v| number(*v, across))
+            .y_label_formatter(&|v| number(*v, up))
+            .x_desc("time")
+            .y_desc(if is_log { "decimal logarithm" } else { "" })
+            .axis_desc_style(("sans-serif", 12))
+            .draw()?;
+        chart.draw_series(rows.iter().map(|row| {
+            let [from, to] = bar(row.1, row.3);
+            PathElement::new([(row.0, from), (row.0, to)], MEASURED.mix(0.4).stroke_width(1))
+        }))?;
+        chart.draw_series(LineSeries::new(
+            rows.iter().map(|row| (row.0, place(row.2))),
+            EXPECTED.stroke_width(2),
+        ))?;
+        chart.draw_series(rows.iter().map(|row| Circle::new((row.0, place(row.1)), 3, MEASURED.filled())))?;
+        Ok(())
+    })
+}
+
+/// The ends of all searches, the best first: how often the best was found, and what else there is.
+pub(super) fn ends(objectives: &[f64]) -> String {
+    let mut sorted: Vec<f64> = objectives.iter().copied().filter(|value| value.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let Some(best) = sorted.first().copied() else { return String::new() };
+    let over: Vec<f64> = sorted.iter().map(|value| (value - best + 1.0).log10()).collect();
+    let (low, high) = around(over.iter().copied());
+    let title = "ends of the searches";
+    let span = high - low;
+    svg((420, 260), title, |area| {
+        let mut chart = ChartBuilder::on(area)
+            .caption(title, ("sans-serif", 13).into_font().color(&INK))
+            .margin(8)
+            .margin_right(16)
+            .x_label_area_size(34)
+            .y_label_area_size(60)
+            .build_cartesian_2d(0.5..over.len() as f64 + 0.5, low..high)?;
+        chart
+            .configure_mesh()
+            .light_line_style(WHITE)
+            .bold_line_style(MESH)
+            .x_labels(over.len().min(10))
+            .y_labels(6)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
+            .x_label_formatter(&|v| format!("{v:.0}"))
+            .y_label_formatter(&|v| number(*v, span))
+            .x_desc("search, the best first")
+            .y_desc("log10(1 + loss of log-likelihood)")
+            .axis_desc_style(("sans-serif", 12))
+            .draw()?;
+        chart.draw_series(over.iter().enumerate().map(|(at, value)| {
+            let colour = if *value < 1.1f64.log10() { MEASURED } else { OTHER };
+            Circle::new((at as f64 + 1.0, *value), 4, colour.filled())
+        }))?;
+        Ok(())
+    })
+}
+
+/// A profile, with the line below which 95 % lie.
+pub(super) fn profile(name: &str, scale: ParameterScale, own: &ParameterProfile) -> String {
+    let allowed = 1.920_729_410_347_062;
+    let (left, right) = around(own.points.iter().map(|point| point[0]));
+    let top = own.points.iter().map(|point| point[1]).fold(allowed, f64::max).min(3.0 * allowed);
+    let bottom = own.points.iter().map(|point| point[1]).fold(0.0, f64::min);
+    let (low, high) = (bottom - 0.05 * (top - bottom), top + 0.1 * (top - bottom));
+    let span = right - left;
+    svg((420, 240), name, |area| {
+        let mut chart = ChartBuilder::on(area)
+            .caption(name, ("sans-serif", 13).into_font().color(&INK))
+            .margin(8)
+            .margin_right(16)
+            .x_label_area_size(34)
+            .y_label_area_size(54)
+            .build_cartesian_2d(left..right, low..high)?;
+        let along = match scale {
+            ParameterScale::Linear => name.to_owned(),
+            scale => format!("{} of {name}", scale.word()),
+        };
+        chart
+            .configure_mesh()
+            .light_line_style(WHITE)
+            .bold_line_style(MESH)
+            .x_labels(6)
+            .y_labels(5)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
+            .x_label_formatter(&|v| number(*v, span))
+            .y_label_formatter(&|v| number(*v, high - low))
+            .x_desc(along)
+            .y_desc("loss of log-likelihood")
+            .axis_desc_style(("sans-serif", 12))
+            .draw()?;
+        chart.draw_series(LineSeries::new([(left, allowed), (right, allowed)], OTHER.stroke_width(1)))?;
+        let points = own.points.iter().map(|point| (point[0], point[1].min(high)));
+        chart.draw_series(LineSeries::new(points.clone(), MEASURED.stroke_width(2)))?;
+        chart.draw_series(points.map(|point| Circle::new(point, 2, MEASURED.filled())))?;
+        Ok(())
+    })
+}

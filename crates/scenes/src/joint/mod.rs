@@ -1,0 +1,12 @@
+//! Several experiments in one scene: conditions of their own, one set of parameters, errors whose size may be sought too.
+//!
+//! A [`JointScene`] is read from TOML and measurements from CSV, in rows of experiment, output, time and value; [`JointScene::problem`] puts the
+//! settings of each experiment into the model's equations, and [`JointExperiments`] fits all of it at once.
+
+mod built;
+mod keys;
+mod rows;
+mod run;
+
+pub use keys::JointScene;
+pub use run::{GoodnessOfFit, JointAnswer, JointExperiments, NominalAnswer};

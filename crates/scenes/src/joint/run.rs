@@ -1,0 +1,173 @@
+//! The fit of several experiments, and what its answer is worth.
+
+use super::keys::JointScene;
+use palmistry_fit::{
+    ErrorLaw, Exactness, Information, JointFit, JointProblem, Likelihood, ParameterProfile, Simulated, fit,
+    profile,
+};
+use palmistry_lang::ReadError;
+use palmistry_observe::exceeded_with;
+use rayon::prelude::*;
+use std::path::Path;
+
+/// A parameter lies at a bound that is nearer to it than this part of the range.
+const AT_BOUND: f64 = 1e-6;
+
+/// A fit whose residuals are so large by chance less often than this is none.
+const FALSE_ALARM: f64 = 0.01;
+
+/// How well the best parameters explain the measurements, where the size of the errors is known.
+#[derive(Clone, Copy, Debug)]
+pub struct GoodnessOfFit {
+    /// The sum of the squares of the residuals over the sizes of their errors.
+    pub chi_square: f64,
+    /// Measurements without the parameters that are told.
+    pub degrees: usize,
+    /// How often chance leaves more.
+    pub probability: f64,
+}
+
+impl GoodnessOfFit {
+    /// Whether chance leaves so much often enough.
+    pub fn fits(&self) -> bool {
+        self.probability >= FALSE_ALARM
+    }
+}
+
+/// What is expected at the published values.
+#[derive(Clone, Debug)]
+pub struct NominalAnswer {
+    /// The values, on the scales of the parameters.
+    pub place: Vec<f64>,
+    /// What they come to, or why nothing.
+    pub simulated: Result<Simulated, String>,
+}
+
+/// What all experiments tell together.
+#[derive(Debug)]
+pub struct JointAnswer {
+    /// At the published values, where all parameters have one.
+    pub nominal: Option<NominalAnswer>,
+    /// The searches; none where none was asked for, and why there is none.
+    pub fit: Option<Result<JointFit, String>>,
+    /// Of each parameter whether its best value lies at a bound.
+    pub at_bounds: Vec<bool>,
+    /// What the measurements tell.
+    pub information: Option<Information>,
+    /// How well they are explained; none where the size of the errors is sought, or errors are not normal.
+    pub goodness: Option<GoodnessOfFit>,
+    /// Profile likelihoods, where they were asked for.
+    pub profiles: Vec<ParameterProfile>,
+}
+
+impl JointAnswer {
+    /// Whether something was found, and nothing speaks against it.
+    pub fn as_expected(&self) -> bool {
+        let fits = self.goodness.is_none_or(|own| own.fits());
+        match &self.fit {
+            Some(fit) => fit.is_ok() && fits,
+            None => self.nominal.as_ref().is_none_or(|own| own.simulated.is_ok()),
+        }
+    }
+}
+
+/// A scene of several experiments with its measurements.
+pub struct JointExperiments {
+    /// The scene.
+    pub scene: JointScene,
+    /// All of it as programs.
+    pub likelihood: Likelihood,
+}
+
+impl JointExperiments {
+    /// Takes a scene and its measurements, or those of another file.
+    ///
+    /// # Errors
+    /// What is wrong with the model, the scene or the measurements, and where.
+    pub fn new(scene: JointScene, data: Option<&Path>) -> Result<JointExperiments, ReadError> {
+        let problem = scene.problem(data)?;
+        let likelihood = Likelihood::new(problem).map_err(|name| {
+            let help =
+                format!("add '{name}' to [known] or to [parameters], or set it in each experiment or row");
+            scene.error_at("experiments", format!("nothing says what '{name}' is"), help)
+        })?;
+        Ok(JointExperiments { scene, likelihood })
+    }
+
+    /// The problem.
+    pub fn problem(&self) -> &JointProblem {
+        self.likelihood.problem()
+    }
+
+    /// How many searches and profiles there are to do.
+    pub fn count(&self) -> usize {
+        self.scene.starts + if self.scene.profiles { self.problem().parameters.len() } else { 0 }
+    }
+
+    /// Simulates at the published values, searches from all starts, and asks what is told.
+    pub fn run(&self, interrupted: &(dyn Fn() -> bool + Sync), done: &(dyn Fn() + Sync)) -> JointAnswer {
+        let nominal = self.problem().nominal().map(|place| {
+            let simulated = self
+                .likelihood
+                .at(&place, Exactness::Answer, &|| interrupted())
+                .map_err(|why| why.to_string());
+            NominalAnswer { place, simulated }
+        });
+        let mut answer = JointAnswer {
+            nominal,
+            fit: None,
+            at_bounds: Vec::new(),
+            information: None,
+            goodness: None,
+            profiles: Vec::new(),
+        };
+        if self.scene.starts == 0 {
+            return answer;
+        }
+        let found =
+            fit(&self.likelihood, self.scene.starts, self.scene.steps, self.scene.seed, interrupted, done);
+        if let Ok(found) = &found {
+            let best = found.best();
+            answer.at_bounds = self.at_bounds(&best.found);
+            let information = Information::of(&found.simulated, &answer.at_bounds);
+            answer.goodness = self.goodness(&found.simulated, &answer.at_bounds);
+            if self.scene.profiles {
+                let one = |place: usize| {
+                    let deviation = information.deviations[place].unwrap_or(f64::INFINITY);
+                    let found =
+                        profile(&self.likelihood, &best.found, best.objective, place, deviation, interrupted);
+                    done();
+                    found
+                };
+                answer.profiles = (0..best.found.len()).into_par_iter().map(one).collect();
+            }
+            answer.information = Some(information);
+        }
+        answer.fit = Some(found);
+        answer
+    }
+
+    fn at_bounds(&self, found: &[f64]) -> Vec<bool> {
+        let is_at = |(one, place): (&palmistry_fit::SoughtParameter, &f64)| {
+            let [low, high] = one.scaled_bounds();
+            (place - low).min(high - place) <= AT_BOUND * (high - low)
+        };
+        self.problem().parameters.iter().zip(found).map(is_at).collect()
+    }
+
+    fn goodness(&self, simulated: &Simulated, at_bounds: &[bool]) -> Option<GoodnessOfFit> {
+        let problem = self.problem();
+        let sought: Vec<_> = problem.parameters.iter().map(|one| one.symbol).collect();
+        let sizes = problem.system.graph.symbols_of(problem.measurements.iter().map(|one| one.size));
+        let is_known = !sizes.iter().any(|symbol| sought.contains(symbol) || problem.states.contains(symbol));
+        let is_normal = problem.measurements.iter().all(|one| one.law == ErrorLaw::Normal);
+        let has_prior = problem.parameters.iter().any(|one| one.prior.is_some());
+        if !is_known || !is_normal || has_prior {
+            return None;
+        }
+        let told = at_bounds.iter().filter(|is_at| !**is_at).count();
+        let degrees = problem.measurements.len().checked_sub(told).filter(|degrees| *degrees > 0)?;
+        let probability = exceeded_with(simulated.chi_square, degrees as f64, 0.0);
+        Some(GoodnessOfFit { chi_square: simulated.chi_square, degrees, probability })
+    }
+}
