@@ -2,9 +2,15 @@
 
 use super::problem::{JointProblem, Phase};
 use palmistry_lang::System;
-use palmistry_math::expression::{NodeId, Program, Symbol};
-use palmistry_math::number::Floats;
+use palmistry_math::expression::{Node, NodeId, Program, Symbol};
+use palmistry_math::number::{Floats, Function};
 use std::collections::HashMap;
+
+/// A state that has become negative by less than this has done so by rounding.
+const ROUNDING: f64 = 1e-7;
+
+/// A little more than zero.
+const TINY: f64 = 1e-150;
 
 /// Where an input of a program comes from.
 #[derive(Clone, Copy, Debug)]
@@ -73,6 +79,24 @@ impl Formulas {
             return;
         };
         Formulas::fill(&loaded, room, out);
+        if out.first().is_some_and(|value| value.is_nan()) {
+            self.fill_beside(&loaded, room, out);
+        }
+    }
+
+    /// What is a root of zero or of a little less than zero by rounding has a value all the same: that at a little more than zero.
+    fn fill_beside(
+        &self,
+        loaded: &palmistry_math::expression::Loaded<'_, Floats>,
+        room: &mut Room,
+        out: &mut [f64],
+    ) {
+        for (input, source) in room.inputs.iter_mut().zip(&self.sources) {
+            if matches!(source, Source::State(_)) && (-ROUNDING..=0.0).contains(input) {
+                *input = TINY;
+            }
+        }
+        Formulas::fill(loaded, room, out);
     }
 
     fn fill(loaded: &palmistry_math::expression::Loaded<'_, Floats>, room: &mut Room, out: &mut [f64]) {
@@ -103,6 +127,9 @@ impl LoadedFormulas<'_> {
             Source::Parameter(place) => parameters[*place],
         }));
         Formulas::fill(&self.loaded, room, out);
+        if out.first().is_some_and(|value| value.is_nan()) {
+            self.formulas.fill_beside(&self.loaded, room, out);
+        }
     }
 }
 
@@ -157,12 +184,21 @@ pub(super) struct CompiledPhase {
     pub start: Sloped,
     /// Of each state the row of its start, where it is given.
     pub given: Vec<Option<usize>>,
+    /// What is zero where a rate has a kink or a jump at some time: formulas of time and parameters.
+    pub switches: Sloped,
+    /// The state that is time.
+    pub clock: Option<usize>,
 }
 
 impl CompiledPhase {
     /// # Errors
     /// The name of a symbol of which nothing is known.
-    pub fn new(system: &mut System, phase: &Phase, names: &Names) -> Result<CompiledPhase, String> {
+    pub fn new(
+        system: &mut System,
+        phase: &Phase,
+        names: &Names,
+        clock: Option<usize>,
+    ) -> Result<CompiledPhase, String> {
         let rates = Sloped::new(system, &phase.rates, names)?;
         let nodes: Vec<NodeId> = phase.start.iter().flatten().copied().collect();
         let start = Sloped::new(system, &nodes, names)?;
@@ -177,6 +213,27 @@ impl CompiledPhase {
                 })
             })
             .collect();
-        Ok(CompiledPhase { rates, start, given })
+        let switches = switches(system, &phase.rates, names, clock);
+        let switches = Sloped::new(system, &switches, names)?;
+        Ok(CompiledPhase { rates, start, given, switches, clock })
     }
+}
+
+/// What absolute values and signs are taken of, where that hangs on time and on parameters alone.
+fn switches(system: &System, rates: &[NodeId], names: &Names, clock: Option<usize>) -> Vec<NodeId> {
+    let Some(time) = clock.map(|clock| names.states[clock]) else { return Vec::new() };
+    let graph = &system.graph;
+    let mut found = Vec::new();
+    for id in graph.reachable(rates.iter().copied()) {
+        // an absolute value is the root of a square
+        let Node::Apply(Function::Sqrt, square) = graph.node(id) else { continue };
+        let Node::Power(inner, 2) = graph.node(square) else { continue };
+        let symbols = graph.symbols_of([inner]);
+        let is_of_time = symbols.contains(&time);
+        let is_of_others = symbols.iter().any(|symbol| *symbol != time && names.states.contains(symbol));
+        if is_of_time && !is_of_others && !found.contains(&inner) {
+            found.push(inner);
+        }
+    }
+    found
 }

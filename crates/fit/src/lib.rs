@@ -25,3 +25,6 @@ pub use problem::{JointExperiment, JointMeasurement, JointProblem, Phase, Sought
 pub use profile::{ParameterProfile, profile};
 pub use search::{JointFit, SearchEnd, StartEnd, fit};
 pub use simulate::{Exactness, NotFollowed};
+
+#[cfg(test)]
+mod tests;

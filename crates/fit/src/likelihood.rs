@@ -66,14 +66,17 @@ impl Likelihood {
         let names = Names::of(&problem);
         let mut experiments = Vec::new();
         for (at, one) in problem.experiments.iter().enumerate() {
-            let before = one.before.as_ref().map(|phase| CompiledPhase::new(&mut system, phase, &names));
+            let before = one
+                .before
+                .as_ref()
+                .map(|phase| CompiledPhase::new(&mut system, phase, &names, problem.clock));
             let own = || problem.measurements.iter().filter(|measurement| measurement.experiment == at);
             let mut times: Vec<f64> = own().map(|one| one.time).filter(|time| time.is_finite()).collect();
             times.sort_by(f64::total_cmp);
             times.dedup();
             experiments.push(CompiledExperiment {
                 before: before.transpose()?,
-                phase: CompiledPhase::new(&mut system, &one.phase, &names)?,
+                phase: CompiledPhase::new(&mut system, &one.phase, &names, problem.clock)?,
                 times,
                 rests: own().any(|one| one.time.is_infinite()),
             });

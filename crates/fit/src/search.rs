@@ -64,6 +64,8 @@ pub struct SearchEnd {
 pub struct JointFit {
     /// All searches, in the order of their starts.
     pub searches: Vec<SearchEnd>,
+    /// How many of them began at random; the others near the best end of those before them.
+    pub random: usize,
     /// The place of the best among them.
     pub best: usize,
     /// What is expected at the best.
@@ -76,10 +78,12 @@ impl JointFit {
         &self.searches[self.best]
     }
 
-    /// How many searches came to the best end, that one included.
-    pub fn arrived(&self) -> usize {
+    /// How many searches from random starts came to the best end, and how many from near it.
+    pub fn arrived(&self) -> [usize; 2] {
         let least = self.best().objective;
-        self.searches.iter().filter(|one| one.objective <= least + SAME).count()
+        let came = |list: &[SearchEnd]| list.iter().filter(|one| one.objective <= least + SAME).count();
+        let (random, near) = self.searches.split_at(self.random);
+        [came(random), came(near)]
     }
 }
 
@@ -119,7 +123,7 @@ pub fn fit(
             break;
         }
     }
-    best_of(likelihood, searches, interrupted)
+    best_of(likelihood, (searches, starts), interrupted)
 }
 
 /// The search that came farthest.
@@ -166,7 +170,7 @@ fn from_near(
 /// The best of some searches, followed to its end.
 fn best_of(
     likelihood: &Likelihood,
-    mut searches: Vec<SearchEnd>,
+    (mut searches, random): (Vec<SearchEnd>, usize),
     interrupted: &(dyn Fn() -> bool + Sync),
 ) -> Result<JointFit, String> {
     let Some(place) =
@@ -190,7 +194,7 @@ fn best_of(
         best.end = last.end;
     }
     let simulated = simulate(&best.found)?;
-    Ok(JointFit { searches, best: place, simulated })
+    Ok(JointFit { searches, random, best: place, simulated })
 }
 
 fn from_draws(

@@ -9,7 +9,7 @@ use diffsol::error::DiffsolError;
 use diffsol::{
     NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason,
 };
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use std::cell::RefCell;
 
 /// How exactly is followed.
@@ -51,6 +51,11 @@ const AT_REST: f64 = 1e-8;
 
 /// Where nothing has come to rest by then, it is said.
 const LONGEST: f64 = 1e12;
+
+/// So far on either side of a kink rates are looked at: at the kink itself signs have no value.
+fn beside(time: f64) -> f64 {
+    1e-11 * (1.0 + time)
+}
 
 /// Why an experiment could not be followed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -129,7 +134,46 @@ impl CompiledPhase {
         moment
     }
 
+    /// When rates have kinks or jumps until a time, increasing, each with its derivatives by the parameters on their scales.
+    fn kinks(&self, at: &At<'_>, until: f64) -> Vec<(f64, DVector<f64>)> {
+        let Some(clock) = self.clock else { return Vec::new() };
+        let mut room = Room::default();
+        let mut values = [(); 3].map(|()| vec![0.0; self.switches.rows]);
+        let mut states = vec![0.0; self.given.len()];
+        for (time, values) in values.iter_mut().enumerate() {
+            states[clock] = time as f64;
+            self.switches.values.run(&states, at.values, &mut room, values);
+        }
+        let mut derivatives = vec![0.0; self.switches.by_states.len() + self.switches.by_parameters.len()];
+        let mut found: Vec<(f64, DVector<f64>)> = Vec::new();
+        for row in 0..self.switches.rows {
+            let [a, b, c] = [0, 1, 2].map(|time: usize| values[time][row]);
+            let slope = b - a;
+            let is_straight = (c - 2.0 * b + a).abs() <= 1e-9 * (a.abs() + b.abs() + c.abs());
+            let time = -a / slope;
+            // bent ones are left to the control of the steps
+            if !is_straight || !(0.0..=until).contains(&time) {
+                continue;
+            }
+            states[clock] = time;
+            self.switches.slopes.run(&states, at.values, &mut room, &mut derivatives);
+            let mut moves = DVector::zeros(at.values.len());
+            let by_parameters = &derivatives[self.switches.by_states.len()..];
+            for ([own, column], derivative) in self.switches.by_parameters.iter().zip(by_parameters) {
+                if *own == row {
+                    moves[*column] -= derivative * at.slopes[*column] / slope;
+                }
+            }
+            found.push((time, moves));
+        }
+        found.sort_by(|one, other| one.0.total_cmp(&other.0));
+        found.dedup_by(|one, other| one.0 - other.0 <= 2.0 * beside(one.0));
+        found
+    }
+
     /// Follows from a start at time zero: the moments at increasing times, and where `rests` is asked for the one at which all but the clock has come to rest.
+    /// Where rates have a kink or a jump at a time that is known, steps end there; how the time of a jump moves with the parameters is in
+    /// the derivatives.
     ///
     /// # Errors
     /// When and why not.
@@ -137,6 +181,55 @@ impl CompiledPhase {
         &self,
         at: &At<'_>,
         start: &Moment,
+        times: &[f64],
+        rests: Option<Option<usize>>,
+        how: (Exactness, &dyn Fn() -> bool),
+    ) -> Result<(Vec<Moment>, Option<Moment>), (f64, String)> {
+        let until = if rests.is_some() { LONGEST } else { times.last().copied().unwrap_or(0.0) };
+        let kinks = self.kinks(at, until);
+        let (Some(clock), false) = (self.clock, kinks.is_empty()) else {
+            return self.smoothly(at, (0.0, start), times, rests, how);
+        };
+        let mut found = Vec::with_capacity(times.len());
+        let (mut from, mut start) = (0.0, start.clone());
+        let mut rates = [vec![0.0; start.states.len()], vec![0.0; start.states.len()]];
+        let mut room = Room::default();
+        for (time, moves) in &kinks {
+            let [before, behind] = [time - beside(*time), time + beside(*time)];
+            if before > from {
+                let count = times[found.len()..].iter().filter(|own| **own <= *time).count();
+                let mut own: Vec<f64> = times[found.len()..found.len() + count].to_vec();
+                own.iter_mut().for_each(|time| *time = time.min(before));
+                own.push(before);
+                let (mut there, _) = self.smoothly(at, (from, &start), &own, None, how)?;
+                let Some(end) = there.pop() else { break };
+                found.extend(there);
+                start = end;
+            }
+            start.states[clock] = before;
+            self.rates.values.run(&start.states, at.values, &mut room, &mut rates[0]);
+            start.states[clock] = behind;
+            self.rates.values.run(&start.states, at.values, &mut room, &mut rates[1]);
+            for (state, (one, other)) in rates[0].iter().zip(&rates[1]).enumerate() {
+                let jump = one - other;
+                if jump.is_finite() && *time > 0.0 {
+                    for (slope, moved) in start.slopes.row_mut(state).iter_mut().zip(moves.iter()) {
+                        *slope += jump * moved;
+                    }
+                }
+            }
+            from = behind;
+        }
+        let (there, rest) = self.smoothly(at, (from, &start), &times[found.len()..], rests, how)?;
+        found.extend(there);
+        Ok((found, rest))
+    }
+
+    /// The same from a time, where rates are smooth.
+    fn smoothly(
+        &self,
+        at: &At<'_>,
+        (from, start): (f64, &Moment),
         times: &[f64],
         rests: Option<Option<usize>>,
         (exactness, interrupted): (Exactness, &dyn Fn() -> bool),
@@ -197,8 +290,8 @@ impl CompiledPhase {
             }
         };
         let mut found: Vec<Moment> = Vec::with_capacity(times.len());
-        let last = times.last().copied().unwrap_or(0.0);
-        while found.len() < times.len() && times[found.len()] <= 0.0 {
+        let last = times.last().copied().unwrap_or(from);
+        while found.len() < times.len() && times[found.len()] <= from {
             found.push(start.clone());
         }
         if rests.is_none() && found.len() == times.len() {
@@ -212,7 +305,8 @@ impl CompiledPhase {
                 .atol([absolute])
                 .sens_rtol(relative * 10.0)
                 .sens_atol([absolute * 100.0])
-                .h0(if last > 0.0 { last } else { 1.0 } * 1e-6)
+                .t0(from)
+                .h0(if last > from { last - from } else { 1.0 } * 1e-6)
                 .p(vec![0.0; p])
                 .rhs_sens_implicit(rate, by_state, by_parameter)
                 .init_sens(begin, begin_by, n)
@@ -227,7 +321,7 @@ impl CompiledPhase {
             }
             sums.into_iter().fold(0.0, f64::max)
         };
-        let way = Way { times, rests, end, sought: &sought, all, rate: &rate, interrupted };
+        let way = Way { from, times, rests, end, sought: &sought, all, rate: &rate, interrupted };
         let problem = build(exactness.explicit()).map_err(failed)?;
         let mut solver = problem.tsit45_sens().map_err(failed)?;
         let explicit = way.go(&mut solver, found.clone(), Some(&norm));
@@ -268,6 +362,7 @@ const STABLE: f64 = 1.0;
 
 /// What is to be followed.
 struct Way<'w> {
+    from: f64,
     times: &'w [f64],
     rests: Option<Option<usize>>,
     end: f64,
@@ -292,7 +387,7 @@ impl Way<'_> {
     {
         let lost = |time: f64, error: DiffsolError| Stopped::Lost(time, error.to_string());
         solver.set_stop_time(self.end).map_err(|error| lost(0.0, error))?;
-        let (mut rates, mut looked) = (Vec::new(), 0.0);
+        let (mut rates, mut looked) = (Vec::new(), self.from);
         for step in 0..MOST_STEPS {
             let before = solver.state().t;
             let stopped = solver.step().map_err(|error| lost(before, error))?;

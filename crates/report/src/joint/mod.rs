@@ -180,13 +180,20 @@ fn ending(observed: &JointObserved<'_>) -> Vec<String> {
         None => {}
         Some(Err(why)) => lines.push(format!("nothing was found: {why}")),
         Some(Ok(fit)) => {
+            let [random, near] = fit.arrived();
+            let others = fit.searches.len() - fit.random;
             lines.push(format!(
-                "best of {}: log-likelihood {:.4}, chi-square {}; {} of {} come to it (within 0.1)",
-                count(fit.searches.len(), "search").replace("searchs", "searches"),
+                "best: log-likelihood {:.4}, chi-square {}",
                 fit.simulated.log_likelihood,
-                short(fit.simulated.chi_square),
-                fit.arrived(),
-                fit.searches.len()
+                short(fit.simulated.chi_square)
+            ));
+            let beside = match others {
+                0 => String::new(),
+                _ => format!(", {near} of {others} from near it"),
+            };
+            lines.push(format!(
+                "{random} of {} searches from random starts come to it (within 0.1){beside}",
+                fit.random
             ));
             if fit.best().end != StartEnd::Converged {
                 lines.push(format!(
@@ -194,8 +201,10 @@ fn ending(observed: &JointObserved<'_>) -> Vec<String> {
                     end_word(&fit.best().end)
                 ));
             }
-            if fit.arrived() == 1 && fit.searches.len() > 1 {
-                lines.push("only one search came there: ask for more starts under [search]".to_owned());
+            if random <= 1 && fit.random > 1 {
+                lines.push(
+                    "few searches came there: ask for more starts under [search] to be sure of it".to_owned(),
+                );
             }
             lines.push(match &observed.answer.goodness {
                 Some(own) => format!(
@@ -318,7 +327,9 @@ pub fn joint_json(observed: &JointObserved<'_>) -> Value {
         Some(Ok(fit)) => {
             let mut best = simulated_json(observed, &fit.simulated);
             let free = answer.at_bounds.iter().filter(|is_at| !**is_at).count() as f64;
-            best["arrived"] = json!(fit.arrived());
+            let [random, near] = fit.arrived();
+            best["arrived"] = json!({ "from_random_starts": random, "from_near_it": near });
+            best["random_starts"] = json!(fit.random);
             best["aic"] = json!(2.0 * problem.parameters.len() as f64 - 2.0 * fit.simulated.log_likelihood);
             best["bic"] = json!(
                 (problem.measurements.len() as f64).ln() * problem.parameters.len() as f64

@@ -1,0 +1,390 @@
+//! Held to closed forms, to published values of a stiff system, to differences, and to normal equations.
+
+use super::laws::Term;
+use super::*;
+use palmistry_lang::System;
+use palmistry_math::expression::NodeId;
+use std::path::Path;
+
+const NEVER: fn() -> bool = || false;
+
+/// What is measured: experiment, output, time, value, size.
+type Row<'a> = (usize, &'a str, f64, f64, &'a str);
+
+/// Parameters `[name, low, high]` of a system, experiments as values of other parameters with the starts of its states, and measurements.
+struct Made<'a> {
+    text: &'a str,
+    parameters: &'a [(&'a str, f64, f64, ParameterScale)],
+    experiments: &'a [(&'a [(&'a str, &'a str)], Option<&'a [&'a str]>, &'a [Option<&'a str>])],
+    rows: &'a [Row<'a>],
+    clock: Option<usize>,
+}
+
+impl Made<'_> {
+    fn problem(&self) -> JointProblem {
+        let mut system = System::parse("m.proof", self.text, Path::new("")).unwrap();
+        let names: Vec<&str> = self.parameters.iter().map(|one| one.0).collect();
+        let states: Vec<_> = system
+            .states
+            .iter()
+            .copied()
+            .filter(|state| !names.contains(&system.symbol_name(*state)))
+            .collect();
+        let drift = system.drift().unwrap();
+        let rates: Vec<NodeId> = states
+            .iter()
+            .map(|state| {
+                let found = system.fields[drift].components.iter().find(|(other, _)| other == state);
+                found.map_or_else(|| panic!("no rate"), |(_, node)| *node)
+            })
+            .collect();
+        let value =
+            |system: &mut System, text: &str| system.evaluate_text(text).unwrap().as_number().unwrap();
+        let mut experiments = Vec::new();
+        for (set, before, start) in self.experiments {
+            let settings: std::collections::HashMap<_, _> = set
+                .iter()
+                .map(|(name, text)| (system.find_symbol(name).unwrap(), value(&mut system, text)))
+                .collect();
+            let own = system.graph.substitute(&rates, &settings);
+            let start = start.iter().map(|one| one.map(|text| value(&mut system, text))).collect();
+            let before = before.map(|start| Phase {
+                rates: rates.clone(),
+                start: start.iter().map(|text| Some(value(&mut system, text))).collect(),
+            });
+            experiments.push(JointExperiment {
+                name: format!("e{}", experiments.len()),
+                before,
+                phase: Phase { rates: own, start },
+            });
+        }
+        let measurements = self
+            .rows
+            .iter()
+            .map(|(experiment, output, time, measured, size)| JointMeasurement {
+                experiment: *experiment,
+                output: (*output).to_owned(),
+                time: *time,
+                value: *measured,
+                expected: value(&mut system, output),
+                size: value(&mut system, size),
+                scale: ErrorScale::Linear,
+                law: ErrorLaw::Normal,
+            })
+            .collect();
+        let parameters = self
+            .parameters
+            .iter()
+            .map(|(name, low, high, scale)| SoughtParameter {
+                name: (*name).to_owned(),
+                symbol: system.find_symbol(name).unwrap(),
+                scale: *scale,
+                bounds: [*low, *high],
+                starts: None,
+                nominal: None,
+                prior: None,
+            })
+            .collect();
+        JointProblem { system, states, clock: self.clock, parameters, experiments, measurements }
+    }
+
+    fn likelihood(&self) -> Likelihood {
+        Likelihood::new(self.problem()).unwrap()
+    }
+}
+
+const LOG10: ParameterScale = ParameterScale::Log10;
+const LINEAR: ParameterScale = ParameterScale::Linear;
+
+/// The gradient by central differences.
+fn differences(likelihood: &Likelihood, place: &[f64]) -> Vec<f64> {
+    let at = |place: &[f64]| likelihood.at(place, Exactness::Answer, &NEVER).unwrap().objective;
+    (0..place.len())
+        .map(|i| {
+            let step = 1e-4;
+            let moved = |by: f64| {
+                let mut moved = place.to_vec();
+                moved[i] += by;
+                at(&moved)
+            };
+            (moved(step) - moved(-step)) / (2.0 * step)
+        })
+        .collect()
+}
+
+fn near(one: f64, other: f64, part: f64) {
+    assert!((one - other).abs() <= part * (1.0 + other.abs()), "{one:e} and {other:e}");
+}
+
+/// A decay from an unknown start: values, gradient and information by the closed form, on mixed scales.
+#[test]
+fn a_decay_is_as_its_closed_form() {
+    let rows: Vec<Row<'_>> = (0..6).map(|i| (0, "2*x", f64::from(i), 1.0, "s*(1 + x)")).collect();
+    let made = Made {
+        text: "system \"decay\"\nstate x\nparam k, a, s unknown\ndrift f\n  x' = -k*x\noutput x\n",
+        parameters: &[
+            ("k", 1e-3, 1e2, LOG10),
+            ("a", -10.0, 10.0, LINEAR),
+            ("s", 1e-3, 1e2, ParameterScale::Log),
+        ],
+        experiments: &[(&[], None, &[Some("a")])],
+        rows: &rows,
+        clock: None,
+    };
+    let likelihood = made.likelihood();
+    let (k, a, s) = (0.7f64, 1.5f64, 0.3f64);
+    let place = [k.log10(), a, s.ln()];
+    let found = likelihood.at(&place, Exactness::Answer, &NEVER).unwrap();
+    let mut objective = 0.0;
+    for (i, (expected, size)) in found.expected.iter().zip(&found.sizes).enumerate() {
+        let x = a * (-k * i as f64).exp();
+        near(*expected, 2.0 * x, 1e-8);
+        near(*size, s * (1.0 + x), 1e-8);
+        let residual = (2.0 * x - 1.0) / (s * (1.0 + x));
+        objective += 0.5 * (std::f64::consts::TAU * (s * (1.0 + x)).powi(2)).ln() + 0.5 * residual * residual;
+    }
+    near(found.objective, objective, 1e-8);
+    for (own, other) in found.gradient.iter().zip(differences(&likelihood, &place)) {
+        near(*own, other, 1e-6);
+    }
+    // by k: x' = -t x; the information is that of the expected values and of the sizes
+    let by_k = |t: f64| -t * a * (-k * t).exp() * k * std::f64::consts::LN_10;
+    let own: f64 = (0..6)
+        .map(|i| {
+            let size = s * (1.0 + a * (-k * f64::from(i)).exp());
+            (2.0 * by_k(f64::from(i)) / size).powi(2) + 2.0 * (s * by_k(f64::from(i)) / size).powi(2)
+        })
+        .sum();
+    near(found.information[(0, 0)], own, 1e-7);
+}
+
+/// H. H. Robertson's reactions: rates that differ by nine orders of magnitude. Values at 40 and 4e5 as in E. Hairer, G. Wanner (test set IVP) and SUNDIALS' example.
+#[test]
+fn a_stiff_system_is_followed_with_its_derivatives() {
+    let rows: Vec<Row<'_>> = [40.0, 4e5]
+        .iter()
+        .flat_map(|time| ["x", "1e6*y", "z"].map(|output| (0, output, *time, 0.5, "1")))
+        .collect();
+    let made = Made {
+        text: "system \"robertson\"\nstate x, y, z\nparam a, b, c unknown\ndrift f\n  x' = -a*x + b*y*z\n  y' = a*x - b*y*z - c*y^2\n  z' = c*y^2\noutput x\n",
+        parameters: &[("a", 1e-4, 1e1, LOG10), ("b", 1e2, 1e6, LOG10), ("c", 1e5, 1e9, LOG10)],
+        experiments: &[(&[], None, &[Some("1"), Some("0"), Some("0")])],
+        rows: &rows,
+        clock: None,
+    };
+    let likelihood = made.likelihood();
+    let place = [0.04f64.log10(), 4.0, 3e7f64.log10()];
+    let found = likelihood.at(&place, Exactness::Answer, &NEVER).unwrap();
+    let known = [0.715_827_068_7, 9.185_534_764_5, 0.284_163_745_7, 4.938_3e-3, 1.984_99e-2, 0.995_061_7];
+    let parts = [1e-8, 1e-8, 1e-8, 1e-5, 1e-5, 1e-6];
+    for ((own, known), part) in found.expected.iter().zip(known).zip(parts) {
+        near(*own, known, part);
+    }
+    for (own, other) in found.gradient.iter().zip(differences(&likelihood, &place)) {
+        near(*own, other, 1e-5);
+    }
+}
+
+/// At rest before the experiment, and measured at rest behind it, with the derivatives of both.
+#[test]
+fn rest_is_found_with_its_derivatives() {
+    let made = Made {
+        text: "system \"rest\"\nstate x, t\nparam a, b unknown\nparam u = 1\ndrift f\n  x' = a - b*u*x\n  t' = 1\noutput x\n",
+        parameters: &[("a", 1e-3, 1e3, LOG10), ("b", 1e-3, 1e3, LOG10)],
+        // u is one before, and two in the experiment; the clock begins again
+        experiments: &[(&[("u", "2")], None, &[Some("3"), Some("0")])],
+        rows: &[(0, "x", 0.5, 1.0, "1"), (0, "x", f64::INFINITY, 1.0, "1")],
+        clock: Some(1),
+    };
+    let mut problem = made.problem();
+    let one = problem.system.graph.integer(1);
+    let u = problem.system.find_symbol("u").unwrap();
+    let rates = problem.experiments[0].phase.rates.clone();
+    // the same rates with u = 1: doubled b is undone
+    let values = std::collections::HashMap::from([(u, one)]);
+    let drift = problem.system.drift().unwrap();
+    let first = problem.system.fields[drift].components[0].1;
+    let before = problem.system.graph.substitute(&[first], &values)[0];
+    let zero = problem.system.graph.integer(0);
+    problem.experiments[0].before =
+        Some(Phase { rates: vec![before, rates[1]], start: vec![Some(zero), Some(zero)] });
+    problem.experiments[0].phase.start = vec![None, Some(zero)];
+    let likelihood = Likelihood::new(problem).unwrap();
+    let (a, b) = (1.2f64, 0.4f64);
+    let place = [a.log10(), b.log10()];
+    let found = likelihood.at(&place, Exactness::Answer, &NEVER).unwrap();
+    let (old, new) = (a / b, a / (2.0 * b));
+    near(found.expected[0], new + (old - new) * (-2.0 * b * 0.5).exp(), 1e-7);
+    near(found.expected[1], new, 1e-7);
+    for (own, other) in found.gradient.iter().zip(differences(&likelihood, &place)) {
+        near(*own, other, 1e-5);
+    }
+}
+
+/// A rate that is switched off at a time that is sought: the state and its derivative by that time.
+#[test]
+fn a_jump_moves_with_its_time() {
+    let made = Made {
+        text: "system \"pulse\"\nstate x, t\nparam k, T unknown\ndrift f\n  x' = k*(1 + sign(T - t))/2\n  t' = 1\noutput x\n",
+        parameters: &[("k", 1e-3, 1e3, LOG10), ("T", 0.5, 20.0, LINEAR)],
+        experiments: &[(&[], None, &[Some("0"), Some("0")])],
+        rows: &[(0, "x", 1.0, 1.0, "1"), (0, "x", 3.0, 1.0, "1"), (0, "x", 8.0, 1.0, "1")],
+        clock: Some(1),
+    };
+    let likelihood = made.likelihood();
+    for end in [3.0, 4.5] {
+        let place = [0.3f64.log10(), end];
+        let found = likelihood.at(&place, Exactness::Answer, &NEVER).unwrap();
+        for (own, time) in found.expected.iter().zip([1.0f64, 3.0, 8.0]) {
+            near(*own, 0.3 * time.min(end), 1e-8);
+        }
+        // what is measured at the very time has two derivatives
+        if end > 4.0 {
+            let by_end = found.sensitivities.column(1);
+            for (own, known) in by_end.iter().zip([0.0, 0.0, 0.3]) {
+                near(*own, known, 1e-8);
+            }
+        }
+    }
+}
+
+/// Densities of what is measured have the integral one, on each scale and by each law; and their derivatives are those of differences.
+#[test]
+fn densities_are_densities() {
+    for scale in [ErrorScale::Linear, ErrorScale::Log, ErrorScale::Log10] {
+        for law in [ErrorLaw::Normal, ErrorLaw::Laplace] {
+            let (expected, size) = (2.0, 0.1);
+            let density = |m: f64| law.term(scale, m, expected, size).map_or(0.0, |term| (-term.value).exp());
+            // by the logarithm of what is measured
+            let width = 1e-3;
+            let sum: f64 = (-40_000..40_000)
+                .map(|i| (f64::from(i) * width).exp())
+                .map(|m| {
+                    (density(m) + if scale == ErrorScale::Linear { density(-m) } else { 0.0 }) * m * width
+                })
+                .sum();
+            near(sum, 1.0, 1e-5);
+            let value = |y: f64, s: f64| law.term(scale, 1.7, y, s).unwrap().value;
+            let Term { by_expected, by_size, .. } = law.term(scale, 1.7, expected, size).unwrap();
+            let step = 1e-6;
+            near(
+                by_expected,
+                (value(expected + step, size) - value(expected - step, size)) / (2.0 * step),
+                1e-6,
+            );
+            near(by_size, (value(expected, size + step) - value(expected, size - step)) / (2.0 * step), 1e-6);
+            assert!(law.term(scale, 1.7, expected, 0.0).is_none());
+        }
+    }
+    for (law, is_on_scale) in [
+        (PriorLaw::Normal, false),
+        (PriorLaw::Normal, true),
+        (PriorLaw::LogNormal, false),
+        (PriorLaw::LogLaplace, false),
+    ] {
+        let prior = Prior { law, is_on_scale, centre: 0.2, spread: 0.5 };
+        let [_, slope, _] = prior.term(LOG10, 0.4);
+        let step = 1e-6;
+        let difference = (prior.term(LOG10, 0.4 + step)[0] - prior.term(LOG10, 0.4 - step)[0]) / (2.0 * step);
+        near(slope, difference, 1e-7);
+    }
+}
+
+/// Two decays in two experiments with a common rate: the truth is found from anywhere, and it is the same on any number of threads.
+#[test]
+fn the_truth_is_found_on_any_number_of_threads() {
+    let truth = |amplitude: f64, t: f64| amplitude * ((-0.8 * t).exp() + (-0.05 * t).exp());
+    let mut rows: Vec<Row<'_>> = Vec::new();
+    for i in 0..12 {
+        let t = 2.0 * f64::from(i);
+        rows.push((0, "x + y", t, truth(2.0, t), "0.01"));
+        rows.push((1, "x + y", t, truth(5.0, t), "0.01"));
+    }
+    let made = Made {
+        text: "system \"decays\"\nstate x, y\nparam k, q, a, b unknown\ndrift f\n  x' = -k*x\n  y' = -q*y\noutput x\n",
+        parameters: &[
+            ("k", 1e-1, 1e2, LOG10),
+            ("q", 1e-4, 1e-1, LOG10),
+            ("a", 1e-2, 1e2, LOG10),
+            ("b", 1e-2, 1e2, LOG10),
+        ],
+        experiments: &[(&[], None, &[Some("a"), Some("a")]), (&[], None, &[Some("b"), Some("b")])],
+        rows: &rows,
+        clock: None,
+    };
+    let likelihood = made.likelihood();
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| fit(&likelihood, 6, 200, 1, &NEVER, &|| ()).unwrap())
+    };
+    let (one, three) = (run(1), run(3));
+    assert_eq!(one.best().found, three.best().found);
+    let all = |fit: &JointFit| fit.searches.iter().map(|one| one.objective).collect::<Vec<_>>();
+    assert_eq!(all(&one), all(&three));
+    for (found, known) in one.best().found.iter().zip([0.8f64, 0.05, 2.0, 5.0]) {
+        near(*found, known.log10(), 1e-6);
+    }
+    assert!(one.simulated.chi_square < 1e-8 && one.arrived()[0] >= 3, "{:?}", one.arrived());
+}
+
+/// A straight line: deviations and profiles are those of the normal equations.
+#[test]
+fn profiles_of_a_line_are_parabolas() {
+    let times = [0.0, 1.0, 2.0, 3.0, 5.0];
+    let values = [0.1, 1.2, 1.9, 3.2, 4.9];
+    let rows: Vec<Row<'_>> = times.iter().zip(values).map(|(t, value)| (0, "x", *t, value, "0.2")).collect();
+    let made = Made {
+        text: "system \"line\"\nstate x\nparam a, b unknown\ndrift f\n  x' = b\noutput x\n",
+        parameters: &[("a", -5.0, 5.0, LINEAR), ("b", -5.0, 5.0, LINEAR)],
+        experiments: &[(&[], None, &[Some("a")])],
+        rows: &rows,
+        clock: None,
+    };
+    let likelihood = made.likelihood();
+    let found = fit(&likelihood, 4, 100, 1, &NEVER, &|| ()).unwrap();
+    let information = Information::of(&found.simulated, &[false, false]);
+    let n = times.len() as f64;
+    let (sum, square): (f64, f64) = (times.iter().sum(), times.iter().map(|t| t * t).sum());
+    let determinant = n * square - sum * sum;
+    let known = [0.2 * (square / determinant).sqrt(), 0.2 * (n / determinant).sqrt()];
+    for (place, known) in known.into_iter().enumerate() {
+        let own = information.deviations[place].unwrap();
+        near(own, known, 1e-8);
+        let best = found.best();
+        let profile = profile(&likelihood, &best.found, best.objective, place, own, &NEVER);
+        for point in &profile.points {
+            near(point[1], 0.5 * ((point[0] - best.found[place]) / known).powi(2), 1e-6);
+        }
+        let [low, high] = profile.interval.map(|end| end.unwrap());
+        // ends are interpolated between points
+        near(high - low, 2.0 * 1.959_964 * known, 0.02);
+    }
+}
+
+/// Of a product nothing tells the factors apart: their direction has no end, and what is told stays told.
+#[test]
+fn factors_of_a_product_are_not_told() {
+    let rows: Vec<Row<'_>> = (0..5).map(|i| (0, "x", f64::from(i), 1.0, "0.1")).collect();
+    let made = Made {
+        text: "system \"product\"\nstate x\nparam a, b, k unknown\ndrift f\n  x' = -k*x\noutput x\n",
+        parameters: &[("a", 1e-2, 1e2, LOG10), ("b", 1e-2, 1e2, LOG10), ("k", 1e-2, 1e2, LOG10)],
+        experiments: &[(&[], None, &[Some("a*b")])],
+        rows: &rows,
+        clock: None,
+    };
+    let found = made.likelihood().at(&[0.1, 0.2, -0.3], Exactness::Answer, &NEVER).unwrap();
+    let information = Information::of(&found, &[false; 3]);
+    assert!(information.covariance.is_none());
+    assert!(
+        information.deviations[0].unwrap().is_infinite() && information.deviations[1].unwrap().is_infinite()
+    );
+    assert!(information.deviations[2].unwrap() < 1.0);
+    let worst = &information.directions[0];
+    assert!(worst.deviation.is_infinite());
+    let parts: Vec<usize> = worst.parts.iter().map(|part| part.0).collect();
+    assert_eq!(parts.len(), 2);
+    near(worst.parts[0].1 + worst.parts[1].1, 0.0, 1e-6);
+    // what is held by a bound tells the other
+    let held = Information::of(&found, &[true, false, false]);
+    assert!(held.deviations[0].is_none() && held.deviations[1].unwrap() < 1.0 && held.covariance.is_some());
+}
