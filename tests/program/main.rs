@@ -14,5 +14,6 @@ mod observable_pictures;
 mod page;
 mod paper;
 mod papers;
+mod petab;
 #[cfg(unix)]
 mod process;

@@ -22,23 +22,45 @@ pub struct JointObserved<'a> {
     pub interrupted: bool,
 }
 
-/// A parameter of which two deviations to both sides are more than this part of its range is not told by the measurements.
-const UNTOLD: f64 = 0.5;
+/// Half of an interval of 95 %, in deviations.
+const HALF: f64 = 1.959_964;
 
-/// What is known of a parameter.
+/// A parameter is poorly determined where half of its interval of 95 % is more than this part of a decade, or of its value on a linear scale.
+const POOR: f64 = 0.5;
+
+/// What is known of a parameter, by the information at the best parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Standing {
-    Told,
-    Untold,
+    Determined,
+    Poorly,
+    /// The interval of 95 % goes beyond the bounds, or nothing tells it.
+    Undetermined,
     AtBound,
 }
 
 impl Standing {
     fn word(self) -> &'static str {
         match self {
-            Standing::Told => "determined",
-            Standing::Untold => "not determined",
+            Standing::Determined => "determined",
+            Standing::Poorly => "poorly determined",
+            Standing::Undetermined => "not determined",
             Standing::AtBound => "at a bound",
+        }
+    }
+
+    fn of(parameter: &SoughtParameter, scaled: f64, deviation: Option<f64>, is_at_bound: bool) -> Standing {
+        let Some(deviation) = deviation.filter(|_| !is_at_bound) else { return Standing::AtBound };
+        let [low, high] = parameter.scaled_bounds();
+        let half = HALF * deviation;
+        let wide = match parameter.scale {
+            ParameterScale::Linear => POOR * scaled.abs(),
+            ParameterScale::Log => POOR * std::f64::consts::LN_10,
+            ParameterScale::Log10 => POOR,
+        };
+        match half {
+            _ if half <= wide => Standing::Determined,
+            _ if low <= scaled - half && scaled + half <= high => Standing::Poorly,
+            _ => Standing::Undetermined,
         }
     }
 }
@@ -69,15 +91,12 @@ fn entries<'a>(observed: &JointObserved<'a>) -> Vec<Entry<'a>> {
     let entry = |(place, parameter): (usize, &'a SoughtParameter)| {
         let deviation =
             observed.answer.information.as_ref().and_then(|own| own.deviations.get(place).copied().flatten());
-        let [low, high] = parameter.scaled_bounds();
-        let standing = match deviation {
-            _ if observed.answer.at_bounds.get(place) == Some(&true) => Standing::AtBound,
-            Some(deviation) if 4.0 * deviation <= UNTOLD * (high - low) => Standing::Told,
-            _ => Standing::Untold,
-        };
+        let is_at_bound = observed.answer.at_bounds.get(place) == Some(&true);
+        let scaled = fit.best().found[place];
+        let standing = Standing::of(parameter, scaled, deviation, is_at_bound);
         Entry {
             parameter,
-            scaled: fit.best().found[place],
+            scaled,
             deviation,
             standing,
             profile: observed.answer.profiles.iter().find(|own| own.parameter == place),

@@ -1,6 +1,6 @@
 //! The page of a fit of several experiments.
 
-use super::plot::{MOST_PICTURES, compared, ends, profile};
+use super::plot::{MOST_PICTURES, compared, ends, profile, residuals};
 use super::{JointObserved, direction_words, ending, entries, heading, short, weak, with_deviation};
 use crate::document::document;
 use maud::{Markup, PreEscaped, html};
@@ -86,7 +86,11 @@ pub fn joint_page(observed: &JointObserved<'_>) -> String {
             }
             @if let Some(Ok(fit)) = &answer.fit {
                 @let objectives = fit.searches.iter().map(|one| one.objective).collect::<Vec<_>>();
-                section #searches { h2 { "Searches" } div.two { (PreEscaped(ends(&objectives))) } }
+                section #searches {
+                    h2 { "Searches and residuals" }
+                    p { "Each point on the left is a search from a start of its own; blue ones came to the best end." }
+                    div.two { (PreEscaped(ends(&objectives))) (PreEscaped(residuals(observed, &fit.simulated))) }
+                }
             }
             @if !answer.profiles.is_empty() {
                 section #profiles {

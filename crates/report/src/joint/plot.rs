@@ -10,6 +10,16 @@ const MEASURED: RGBColor = RGBColor(0, 114, 178);
 const EXPECTED: RGBColor = RGBColor(213, 94, 0);
 const OTHER: RGBColor = RGBColor(120, 120, 120);
 
+/// A colour an output.
+const COLOURS: [RGBColor; 6] = [
+    MEASURED,
+    EXPECTED,
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(150, 120, 0),
+];
+
 /// More curves than these are in the JSON only.
 pub(super) const MOST_PICTURES: usize = 24;
 
@@ -134,6 +144,52 @@ pub(super) fn ends(objectives: &[f64]) -> String {
             let colour = if *value < 1.1f64.log10() { MEASURED } else { OTHER };
             Circle::new((at as f64 + 1.0, *value), 4, colour.filled())
         }))?;
+        Ok(())
+    })
+}
+
+/// The residuals over the sizes of their errors, in the order of the measurements, a colour an output; 95 % lie between the lines.
+pub(super) fn residuals(observed: &JointObserved<'_>, simulated: &Simulated) -> String {
+    let problem = observed.experiments.problem();
+    let mut outputs: Vec<&str> = Vec::new();
+    for one in &problem.measurements {
+        if !outputs.contains(&one.output.as_str()) {
+            outputs.push(&one.output);
+        }
+    }
+    let most = simulated.residuals.iter().fold(2.5f64, |most, own| most.max(own.abs())) * 1.1;
+    let title = "residuals, in sizes of their errors";
+    let count = simulated.residuals.len() as f64;
+    svg((420, 260), title, |area| {
+        let mut chart = ChartBuilder::on(area)
+            .caption(title, ("sans-serif", 13).into_font().color(&INK))
+            .margin(8)
+            .margin_right(16)
+            .x_label_area_size(34)
+            .y_label_area_size(54)
+            .build_cartesian_2d(0.0..count + 1.0, -most..most)?;
+        chart
+            .configure_mesh()
+            .light_line_style(WHITE)
+            .bold_line_style(MESH)
+            .x_labels(8)
+            .y_labels(6)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
+            .x_label_formatter(&|v| format!("{v:.0}"))
+            .y_label_formatter(&|v| number(*v, 2.0 * most))
+            .x_desc("measurement")
+            .axis_desc_style(("sans-serif", 12))
+            .draw()?;
+        for level in [-1.96, 1.96] {
+            let line = [(0.0, level), (count + 1.0, level)];
+            chart.draw_series(LineSeries::new(line, OTHER.stroke_width(1)))?;
+        }
+        chart.draw_series(simulated.residuals.iter().zip(&problem.measurements).enumerate().map(
+            |(at, (value, one))| {
+                let place = outputs.iter().position(|own| *own == one.output).unwrap_or(0);
+                Circle::new((at as f64 + 1.0, *value), 3, COLOURS[place % COLOURS.len()].filled())
+            },
+        ))?;
         Ok(())
     })
 }
