@@ -10,3 +10,6 @@ mod run;
 
 pub use keys::JointScene;
 pub use run::{GoodnessOfFit, JointAnswer, JointExperiments, NominalAnswer};
+
+#[cfg(test)]
+mod tests;
