@@ -12,6 +12,7 @@
     palmistry.observe(system, frame, noise=0.01)    # the same of a system at hand and a DataFrame
     palmistry.System.from_function(f, h, states="phi, omega")       # of Python functions; also of SymPy's and CasADi's expressions
     palmistry.import_model("model.xml")             # a model of another program
+    palmistry.import_problem("problem.yaml", "fit.toml")            # a problem in the format PEtab, for observe
 
 `palmistry.recheck` (a second checker) and `palmistry.cluster` (sweeps over many machines) need nothing of this, and work from the source
 tree too, where nothing is compiled.
@@ -47,6 +48,7 @@ _HOMES = {
     "from_function": "traced",
     "from_sympy": "translation",
     "import_model": "system",
+    "import_problem": "system",
     "latex": "system",
     "observe": "observing",
     "poses": "studies",

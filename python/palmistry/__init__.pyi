@@ -35,6 +35,7 @@ from .studies import check as check
 from .studies import poses as poses
 from .system import System as System
 from .system import import_model as import_model
+from .system import import_problem as import_problem
 from .system import latex as latex
 from .system import recheck_file as recheck_file
 from .system import threads as threads

@@ -564,7 +564,7 @@ class Observation(Answer):
 
     @property
     def observers(self) -> list[dict[str, Any]]:
-        """What each method found: updates, end, fit. Of slow motion and in space there are none."""
+        """What each method found: updates, end, fit. Of slow motion, in space and of several experiments there are none."""
         return self.json.get("observers", [])
 
     def _table(self, name: str) -> Table | None:
@@ -573,7 +573,16 @@ class Observation(Answer):
 
     @property
     def measurements(self) -> Table:
-        """The measurements, a row a sample: time (s), outputs, inputs."""
+        """The measurements, a row a sample: time (s), outputs, inputs. Of several experiments a row a measurement: experiment, output, time, value, and where something was simulated what is
+        expected, the deviation of the error and the residual over it."""
+        if self.json.get("kind") == "experiments":
+            import numpy
+
+            shown = self.json["best"] or self.json["nominal"] or {}
+            rows = shown.get("measurements", [])
+            names = ("experiment", "output", "time", "value", "expected", "deviation", "residual")
+            # at rest there is no time
+            return Table({name: numpy.array([numpy.inf if row[name] is None else row[name] for row in rows]) for name in names})
         found = self._table("readings")
         assert found is not None
         return found
@@ -613,8 +622,16 @@ class Observation(Answer):
         """What is estimated, at the beginning of the first window of the method that is shown: name, estimate, deviation.
 
         deviation: a standard deviation; infinite where it is unobservable or what is estimated was held; NaN where the search came to no end, and the estimate is where it stopped.
+        Of several experiments the best parameters; NaN of one that lies at a bound.
         """
         import numpy
+
+        if self.json.get("kind") == "experiments":
+            found = self.json["parameters"]
+            slopes = {"linear": lambda value: 1.0, "log": lambda value: value, "log10": lambda value: value * numpy.log(10)}
+            at_bound = [one["standing"] == "at a bound" for one in found]
+            spread = [numpy.nan if held else numpy.inf if one["deviation"] is None else one["deviation"] * slopes[one["scale"]](one["value"]) for one, held in zip(found, at_bound)]
+            return Table({"name": numpy.array([one["name"] for one in found]), "estimate": numpy.array([one["value"] for one in found], dtype=float), "deviation": numpy.array(spread, dtype=float)})
 
         states = self.updates[0]["states"] if self.updates else {}
         names = [name for name in self._found.sought() if name in states]
@@ -634,7 +651,11 @@ class Observation(Answer):
 
     @property
     def fits(self) -> bool:
-        """Whether each window of the method that is shown converged and its residuals are what the noise explains; False of methods without windows, whose test is in `text`."""
+        """Whether each window of the method that is shown converged and its residuals are what the noise explains; False of methods without windows, whose test is in `text`.
+        Of several experiments whether they pass their chi-square test; False where there is none."""
+        if self.json.get("kind") == "experiments":
+            test = self.json["goodness_of_fit"]
+            return test is not None and test["fits"]
         def passes(update: dict[str, Any]) -> bool:
             return update["standing"] == "converged" and bool(update["fit"]) and update["fit"]["fits"]
 

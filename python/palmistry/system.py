@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pathlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Union
 
@@ -623,6 +624,24 @@ def import_model(
     asked = (format, None if model is None else str(model), _several(outputs), None if unknown is None else _several(unknown), _several(inputs), _several(unknown_inputs), _several(states))
     proof, _, _, _ = _native.imported(os.fspath(path), *asked)
     return System.parse(proof, os.fspath(path))
+
+
+def import_problem(path: str | os.PathLike[str], out: str | os.PathLike[str]) -> pathlib.Path:
+    """Writes a problem of parameter estimation, in the format PEtab (version 1), as a proof file, a scene and measurements; the path of the scene, for `observe`.
+
+    path: the problem (.yaml); the files that it names lie beside or below it. Nothing of them is executed. out: NAME.toml; beside it NAME.proof and NAME.csv are written.
+
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     scene = palmistry.import_problem(problem, pathlib.Path(folder, "hiv.toml"))
+    ...     found = palmistry.observe(scene)
+    >>> found.estimates["name"].tolist(), found.estimates["estimate"].round(2).tolist()
+    (['c', 'delta', 'sd_task0_model0_perelson1_V'], [1.86, 0.55, 0.12])
+    """
+    scene = pathlib.Path(out).with_suffix(".toml")
+    proof, text, measurements, _, _ = _native.imported_problem(os.fspath(path), scene.stem)
+    for end, content in ((".proof", proof), (".csv", measurements), (".toml", text)):
+        scene.with_suffix(end).write_text(content, encoding="utf-8")
+    return scene
 
 
 def verify(folder: str | os.PathLike[str], *, seed: int = 1, times: bool = True) -> Page:

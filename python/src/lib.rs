@@ -22,7 +22,9 @@ mod _native {
     #[pymodule_export]
     use super::observed::ObservationFound;
     #[pymodule_export]
-    use super::questions::{accessible, drops, imported, recheck, recheck_file, reparametrised, solutions};
+    use super::questions::{
+        accessible, drops, imported, imported_problem, recheck, recheck_file, reparametrised, solutions,
+    };
     #[pymodule_export]
     use super::scenes::{latex, observe, observe_measured, our_names, verify};
     #[pymodule_export]

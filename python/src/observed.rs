@@ -3,13 +3,15 @@
 use crate::answers::{columns, printed};
 use crate::errors::unusable;
 use numpy::{PyArray1, PyArray2};
+use palmistry::experiment::joint::{JointAnswer, JointExperiments};
 use palmistry::experiment::slow::{SlowAnswers, SlowExperiment, StudyRow};
 use palmistry::experiment::space::{SpaceAnswers, SpaceExperiment};
 use palmistry::experiment::{Answer, Experiment, ModeWindow, Studied, shown};
 use palmistry::observer::Track;
 use palmistry::report::{
-    Observed, SlowObserved, SpaceObserved, forget_seconds, modes_json, modes_text, observe_json,
-    observe_page, observe_text, slow_json, slow_page, slow_text, space_json, space_page, space_text,
+    JointObserved, Observed, SlowObserved, SpaceObserved, forget_seconds, joint_json, joint_page, joint_text,
+    modes_json, modes_text, observe_json, observe_page, observe_text, slow_json, slow_page, slow_text,
+    space_json, space_page, space_text,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -25,6 +27,8 @@ pub enum Seen {
     Slow { experiment: Box<SlowExperiment>, answers: Box<SlowAnswers>, study: Vec<StudyRow> },
     /// A body in space.
     Space { experiment: Box<SpaceExperiment>, answers: Box<SpaceAnswers> },
+    /// Several experiments with one set of parameters.
+    Joint { experiments: Box<JointExperiments>, answer: Box<JointAnswer> },
 }
 
 /// An experiment, and what its observers made of it.
@@ -64,6 +68,9 @@ impl ObservationFound {
             Seen::Space { experiment, answers } => {
                 space_json(&SpaceObserved { experiment, answers, interrupted })
             }
+            Seen::Joint { experiments, answer } => {
+                joint_json(&JointObserved { experiments, answer, interrupted })
+            }
         };
         if !self.times {
             forget_seconds(&mut object);
@@ -84,6 +91,9 @@ impl ObservationFound {
             Seen::Space { experiment, answers } => {
                 space_text(&SpaceObserved { experiment, answers, interrupted })
             }
+            Seen::Joint { experiments, answer } => {
+                joint_text(&JointObserved { experiments, answer, interrupted })
+            }
         }
     }
 
@@ -100,6 +110,9 @@ impl ObservationFound {
             }
             Seen::Space { experiment, answers } => {
                 Some(space_page(&SpaceObserved { experiment, answers, interrupted }))
+            }
+            Seen::Joint { experiments, answer } => {
+                Some(joint_page(&JointObserved { experiments, answer, interrupted }))
             }
         }
     }

@@ -8,7 +8,7 @@ use palmistry::checker::{Checking, Effort, LARGEST_FILE, ProofSources, VerdictFi
 use palmistry::drops::where_it_drops;
 use palmistry::file::read_text;
 use palmistry::foreign::name_of;
-use palmistry::import::{ForeignFormat, ForeignUnknowns, ImportQuestion, import};
+use palmistry::import::{ForeignFormat, ForeignUnknowns, ImportQuestion, import, import_petab, petab_beside};
 use palmistry::report::{
     accessibility_json, accessibility_text, drops_json, drops_page, drops_text, global_json, global_text,
     recheck_json, recheck_text,
@@ -87,6 +87,24 @@ pub fn reparametrised(py: Python<'_>, system: &System) -> PyResult<String> {
         palmistry::observability::reparametrise(&system, found, &name).map_err(|why| why.to_string())
     })?;
     found.map_err(|why| unusable(py, &why, None))
+}
+
+/// A problem of parameter estimation as a proof file, a scene and measurements: their texts, what was renamed, and what is worth knowing.
+#[pyfunction]
+#[allow(clippy::type_complexity)] // taken apart at once in Python
+pub fn imported_problem(
+    py: Python<'_>,
+    path: PathBuf,
+    stem: String,
+) -> PyResult<(String, String, String, Vec<(String, String)>, Vec<String>)> {
+    let name = name_of(&path);
+    let read = path.clone();
+    let text = interruptible(py, move |_| read_text(&read, LONGEST_MODEL))?;
+    let text = text.map_err(|why| unusable(py, &format!("cannot read {name}: {why}"), None))?;
+    let load = petab_beside(&path);
+    let found = interruptible(py, move |_| import_petab(&name, &text, &stem, &load))?;
+    let found = found.map_err(|error| unreadable(py, &error))?;
+    Ok((found.proof, found.scene, found.measurements, found.renamed, found.remarks))
 }
 
 /// A model of another program as a proof file: its text, its format, what was renamed, and remarks.

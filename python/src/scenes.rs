@@ -6,6 +6,7 @@ use crate::observed::{ObservationFound, Seen};
 use crate::system::System;
 use crate::work::{Cut, interruptible, keeping};
 use numpy::PyReadonlyArray1;
+use palmistry::experiment::joint::{JointExperiments, JointScene};
 use palmistry::experiment::slow::{SlowExperiment, SlowScene, StudyRow, slow_study};
 use palmistry::experiment::space::{SpaceExperiment, SpaceScene};
 use palmistry::experiment::{
@@ -54,6 +55,11 @@ pub fn observe(
             let mut scene = slow?;
             scene.seed = seed.unwrap_or(scene.seed);
             return slowly(SlowExperiment::new(scene, data)?, studies, times, interrupt);
+        }
+        if let Some(joint) = JointScene::read(&scene) {
+            let mut scene = joint?;
+            scene.seed = seed.unwrap_or(scene.seed);
+            return jointly(JointExperiments::new(scene, data)?, studies, times, interrupt);
         }
         let mut scene = Scene::read(&scene)?;
         scene.seed = seed.unwrap_or(scene.seed);
@@ -173,6 +179,16 @@ fn in_space(experiment: SpaceExperiment, studies: bool, times: bool, interrupt: 
         answers.forget_times();
     }
     let seen = Seen::Space { experiment: Box::new(experiment), answers: Box::new(answers) };
+    Ok(ObservationFound { seen, times, interrupted: cut() })
+}
+
+fn jointly(experiments: JointExperiments, studies: bool, times: bool, interrupt: &AtomicBool) -> Found {
+    if studies {
+        return Err(Trouble::NoStudies);
+    }
+    let cut = || interrupt.load(Ordering::Relaxed);
+    let answer = experiments.run(&cut, &|| ());
+    let seen = Seen::Joint { experiments: Box::new(experiments), answer: Box::new(answer) };
     Ok(ObservationFound { seen, times, interrupted: cut() })
 }
 

@@ -117,6 +117,29 @@ class TheProgram(unittest.TestCase):
                 for here, there in zip(found.measurements.values(), columns.dtype.names):
                     self.assertTrue(numpy.array_equal(here, columns[there], equal_nan=True), there)
 
+    def test_several_experiments(self):
+        problem = path("examples", "petab", "Perelson_Science1996", "Perelson_Science1996.yaml")
+        with tempfile.TemporaryDirectory() as folder:
+            here = palmistry.import_problem(problem, os.path.join(folder, "here.toml"))
+            there = program("import", problem, "--json")
+            for end, name in ((".proof", "proof"), (".csv", "measurements")):
+                with open(here.with_suffix(end), encoding="utf-8") as file:
+                    self.assertEqual(file.read(), there[name])
+            with open(here, "a", encoding="utf-8") as file:
+                file.write("\n[search]\nstarts = 4\n")
+            found = palmistry.observe(here, seed=3)
+            self.assertEqual(found.json, program("observe", here, "--seed", "3"))
+            self.assertEqual(found.estimates["name"].tolist(), ["c", "delta", "sd_task0_model0_perelson1_V"])
+            self.assertTrue((abs(found.estimates["estimate"] / numpy.array([1.861, 0.5473, 0.1228]) - 1) < 1e-3).all())
+            self.assertTrue((found.estimates["deviation"] < 0.2 * found.estimates["estimate"]).all())
+            self.assertEqual(len(found.measurements["value"]), 16)
+            self.assertFalse(found.fits)  # the size of the errors is sought: there is no test
+            self.assertTrue(found.page.html.startswith("<!DOCTYPE html>"))
+            with self.assertRaises(Error):
+                palmistry.observe(here, studies=True)
+        with self.assertRaises(Error):
+            palmistry.import_problem(path("examples", "petab", "README.md"), "x.toml")
+
     def test_studies(self):
         scenes = os.path.join("proofs", "moll2002", "scenes")
         scene, space = path(scenes, "general.toml"), path(scenes, "figure_5_3.toml")

@@ -62,9 +62,9 @@ COMMANDS = {
         **{f"--{name}": name for name in ("shape", "centre", "palms", "margin", "margins", "turn", "pad", "tolerance", "grid", "levels")},
         "--out": "Poses.page", **dict.fromkeys(["--bodies", "--family", "--plans", "--seed"], "run"),
     }),
-    "import": (["import_model"], {
+    "import": (["import_model", "import_problem"], {
         "--from": "format", "--model": "model", "--output": "outputs", "--unknown": "unknown", "--input": "inputs", "--unknown-input": "unknown_inputs", "--state": "states",
-        "--out": "System.source",
+        "--out": "import_problem",
     }),
     "new": (["run"], {}),
     "demo": (["run"], {}),

@@ -6,11 +6,11 @@ use clap::{Args, ValueEnum};
 use palmistry::file;
 use palmistry::foreign::name_of;
 use palmistry::import::{
-    ForeignFormat, ForeignUnknowns, ImportQuestion, ImportedModel, ImportedProblem, PetabFile, import,
-    import_petab, is_petab,
+    ForeignFormat, ForeignUnknowns, ImportQuestion, ImportedModel, ImportedProblem, import, import_petab,
+    is_petab, petab_beside,
 };
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Files longer than this are refused, as by every command that reads them.
 const LONGEST_FILE: u64 = 16 << 20;
@@ -189,30 +189,16 @@ impl Import {
             let message = format!("{option} is not for a PEtab problem");
             return Err(Unusable::report(
                 message,
-                "leave it out: its tables say which parameters are sought and what is measured",
+                "leave it out: its tables say which parameters are estimated and what is measured",
             ));
         }
-        let folder = self.file.parent().unwrap_or(Path::new("")).to_owned();
-        let load = |name: &str| -> Result<PetabFile, String> {
-            let named = Path::new(name);
-            // a problem of a stranger reads nothing but what lies beside or below it
-            let is_inside = named
-                .components()
-                .all(|part| matches!(part, std::path::Component::Normal(_) | std::path::Component::CurDir));
-            if !is_inside {
-                return Err("it lies outside of the folder of the problem".to_owned());
-            }
-            let path = folder.join(named);
-            let text = file::read_text(&path, LONGEST_FILE).map_err(|why| why.to_string())?;
-            Ok(PetabFile { name: name_of(&path), text })
-        };
         let stem = match &self.out {
             Some(out) if out.as_os_str() != "-" => out.clone(),
             _ => PathBuf::from(&self.file),
         };
         let stem_name =
             stem.file_stem().map_or("problem".to_owned(), |stem| stem.to_string_lossy().into_owned());
-        let imported = import_petab(shown, text, &stem_name, &load)?;
+        let imported = import_petab(shown, text, &stem_name, &petab_beside(&self.file))?;
         let mut files = Files::default();
         let beside = |extension: &str| stem.with_extension(extension);
         let is_written = self.out.as_ref().is_some_and(|out| out.as_os_str() != "-");

@@ -34,6 +34,9 @@ use std::path::{Path, PathBuf};
 /// With --data - the measurements come from standard input as they are written (CSV), and each window is answered as soon as it is there: with
 /// --json in a line of JSON, and one at the end. Memory is bounded by a window. What ends a stream early takes nothing back that was answered.
 ///
+/// A scene with [experiments] has several, each with conditions of its own, and one set of parameters: they are fitted at once by maximum likelihood, from many starts.
+/// `palmistry import` makes such scenes of problems in the format PEtab.
+///
 /// With --data the measurements come from a CSV or Parquet file with the columns that the model needs (time, outputs, inputs);
 /// faulty rows are reported by number and handled as the scene says, and what --record wrote gives the same answer. With --studies the scene's studies run as well: the
 /// error over many seeds at several levels of noise beside the bound, and the first guesses from which each method arrives.

@@ -74,7 +74,7 @@ fn every_field_of_the_json_is_named() {
         ["v.json", "paper", "out"].map(|name| folder.path().join(name).display().to_string());
     let chapter = chapter("json.md");
     let begin = chapter.split_once("\n## ").expect("parts").0;
-    let runs: [&[&str]; 17] = [
+    let runs: [&[&str]; 19] = [
         &["prove", file, "--verdicts", &verdicts],
         &["recheck", &verdicts],
         &["rank", file, "--samples", "20", "--digits", "5"],
@@ -91,6 +91,8 @@ fn every_field_of_the_json_is_named() {
         &["check", file],
         &["fmt", file],
         &["import", "tests/imports/latent.py"],
+        &["import", "tests/petab/0001/_0001.yaml"],
+        &["observe", "examples/experiments/vessels.toml"],
         &["new", &paper],
     ];
     for run in runs {

@@ -194,7 +194,7 @@ fn mistakes_are_named_where_they_are() {
         ("_0001.yaml", "_model.xml", "../_model.xml", "it lies outside of the folder of the problem"),
         ("_0001.yaml", "_model.xml", "/etc/passwd", "it lies outside of the folder of the problem"),
         ("_0001.yaml", "_model.xml", "none.xml", "cannot read none.xml"),
-        ("_0001.yaml", "parameter_file:", "parameter_file: &a [*a]\nx:", "no PEtab problem"),
+        ("_0001.yaml", "parameter_file:", "parameter_file: &a [*a]\nx:", "the file has a reference"),
         ("_parameters.tsv", "lin", "cubic", "'cubic' is no scale"),
         ("_parameters.tsv", "parameterScale", "scale", "the table has no column 'parameterScale'"),
         ("_observables.tsv", "obs_a\tA", "obs_a\tA +", "cannot be read"),

@@ -1,6 +1,6 @@
 //! What the measurements tell of which parameter, from the information that is expected at the best parameters.
 
-use super::likelihood::Simulated;
+use super::likelihood::SimulatedExperiments;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Of a direction whose information is below this part of the largest nothing is told but by rounding.
@@ -31,7 +31,7 @@ pub struct Information {
 
 impl Information {
     /// Of parameters of which some lie at their bounds.
-    pub fn of(simulated: &Simulated, at_bounds: &[bool]) -> Information {
+    pub fn of(simulated: &SimulatedExperiments, at_bounds: &[bool]) -> Information {
         let all = at_bounds.len();
         let free: Vec<usize> = (0..all).filter(|place| !at_bounds[*place]).collect();
         let own = DMatrix::from_fn(free.len(), free.len(), |i, j| simulated.information[(free[i], free[j])]);

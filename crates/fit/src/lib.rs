@@ -20,7 +20,7 @@ mod trust;
 
 pub use information::{Information, WeakDirection};
 pub use laws::{ErrorLaw, ErrorScale, ParameterScale, Prior, PriorLaw};
-pub use likelihood::{Likelihood, Simulated};
+pub use likelihood::{Likelihood, SimulatedExperiments};
 pub use problem::{JointExperiment, JointMeasurement, JointProblem, Phase, SoughtParameter};
 pub use profile::{ParameterProfile, profile};
 pub use search::{JointFit, SearchEnd, StartEnd, fit};

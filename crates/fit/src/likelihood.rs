@@ -27,7 +27,7 @@ struct CompiledMeasurement {
 
 /// What is expected of the measurements at some parameters.
 #[derive(Clone, Debug)]
-pub struct Simulated {
+pub struct SimulatedExperiments {
     /// Minus the logarithm of the likelihood, priors included.
     pub objective: f64,
     /// The logarithm of the likelihood, without priors.
@@ -44,8 +44,6 @@ pub struct Simulated {
     pub sizes: Vec<f64>,
     /// The residual of each over that size, on the scale on which it is compared.
     pub residuals: Vec<f64>,
-    /// The derivatives of what is expected of each by the parameters on their scales, over its size.
-    pub sensitivities: DMatrix<f64>,
 }
 
 /// A problem as programs: ready to be simulated.
@@ -115,7 +113,7 @@ impl Likelihood {
         scaled: &[f64],
         exactness: Exactness,
         interrupted: &dyn Fn() -> bool,
-    ) -> Result<Simulated, NotFollowed> {
+    ) -> Result<SimulatedExperiments, NotFollowed> {
         let values = self.problem.values(scaled);
         let slopes: Vec<f64> =
             self.problem.parameters.iter().zip(scaled).map(|(one, place)| one.scale.slope(*place)).collect();
@@ -142,9 +140,9 @@ impl Likelihood {
         scaled: &[f64],
         at: &At<'_>,
         moments: &[(Vec<Moment>, Option<Moment>)],
-    ) -> Result<Simulated, NotFollowed> {
+    ) -> Result<SimulatedExperiments, NotFollowed> {
         let (p, count) = (scaled.len(), self.measurements.len());
-        let mut found = Simulated {
+        let mut found = SimulatedExperiments {
             objective: 0.0,
             log_likelihood: 0.0,
             chi_square: 0.0,
@@ -153,10 +151,9 @@ impl Likelihood {
             expected: Vec::with_capacity(count),
             sizes: Vec::with_capacity(count),
             residuals: Vec::with_capacity(count),
-            sensitivities: DMatrix::zeros(count, p),
         };
         let mut room = Room::default();
-        for (row, (one, own)) in self.measurements.iter().zip(&self.problem.measurements).enumerate() {
+        for (one, own) in self.measurements.iter().zip(&self.problem.measurements) {
             let no_value = || NotFollowed::NoValue {
                 experiment: self.problem.experiments[own.experiment].name.clone(),
                 output: own.output.clone(),
@@ -196,8 +193,6 @@ impl Likelihood {
             for (by, weight) in by.iter().zip(term.information) {
                 found.information.ger(weight, by, by, 1.0);
             }
-            let weight = term.information[0].sqrt();
-            found.sensitivities.set_row(row, &(&by[0] * weight).transpose());
             found.expected.push(expected);
             found.sizes.push(size);
             found.residuals.push(term.residual);

@@ -1,6 +1,6 @@
 //! The largest likelihood, from many starts.
 
-use super::likelihood::{Likelihood, Simulated};
+use super::likelihood::{Likelihood, SimulatedExperiments};
 use super::simulate::{Exactness, NotFollowed};
 use super::trust::{Scoring, Search};
 use argmin::core::{Executor, State};
@@ -69,7 +69,7 @@ pub struct JointFit {
     /// The place of the best among them.
     pub best: usize,
     /// What is expected at the best.
-    pub simulated: Simulated,
+    pub simulated: SimulatedExperiments,
 }
 
 impl JointFit {
@@ -205,7 +205,7 @@ fn from_draws(
 ) -> SearchEnd {
     let parameters = &likelihood.problem().parameters;
     let mut why = "no draw was made".to_owned();
-    let mut best: Option<(Vec<f64>, Simulated)> = None;
+    let mut best: Option<(Vec<f64>, SimulatedExperiments)> = None;
     let mut candidates = 0;
     for _ in 0..DRAWS {
         let draw = |one: &super::SoughtParameter| {
@@ -242,7 +242,7 @@ fn ended(start: Vec<f64>, end: StartEnd) -> SearchEnd {
 pub(super) fn search(
     likelihood: &Likelihood,
     start: &[f64],
-    here: Simulated,
+    here: SimulatedExperiments,
     held: &[usize],
     (steps, exactness): (u64, Exactness),
     interrupted: &(dyn Fn() -> bool + Sync),

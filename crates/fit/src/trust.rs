@@ -1,7 +1,7 @@
 //! The search for the largest likelihood from one start, as a solver of argmin.
 
 use super::Exactness;
-use super::likelihood::{Likelihood, Simulated};
+use super::likelihood::{Likelihood, SimulatedExperiments};
 use argmin::core::{Error, IterState, KV, Problem, Solver, State, TerminationReason, TerminationStatus};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -54,18 +54,23 @@ pub(super) struct Scoring {
     lambda: f64,
     growth: f64,
     scales: Vec<f64>,
-    here: Option<Simulated>,
+    here: Option<SimulatedExperiments>,
     pub converged: bool,
     pub stuck: bool,
 }
 
 impl Scoring {
-    pub fn from(here: Simulated) -> Scoring {
+    pub fn from(here: SimulatedExperiments) -> Scoring {
         Scoring { lambda: FIRST, growth: 2.0, here: Some(here), ..Scoring::default() }
     }
 
     /// The step with this damping.
-    fn step(&self, search: &Search<'_>, here: &Simulated, place: &DVector<f64>) -> Option<DVector<f64>> {
+    fn step(
+        &self,
+        search: &Search<'_>,
+        here: &SimulatedExperiments,
+        place: &DVector<f64>,
+    ) -> Option<DVector<f64>> {
         let p = place.len();
         let pushed = |i: usize| {
             let [low, high] = search.bounds[i];

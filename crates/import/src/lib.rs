@@ -26,7 +26,7 @@ mod write;
 pub use expression::{FUNCTIONS, ForeignExpr, ForeignKind, ForeignOrder};
 pub use formulas::PrintedRoles;
 pub use model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate, ForeignUnknowns};
-pub use petab::{ImportedProblem, PetabFile, PetabLoader, import_petab, is_petab};
+pub use petab::{ImportedProblem, PetabFile, PetabLoader, import_petab, is_petab, petab_beside};
 
 use palmistry_io::foreign::{Allowance, Budget, Spent};
 use palmistry_lang::{Problem, ReadError, System, with_plain_line_ends};

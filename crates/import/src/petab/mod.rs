@@ -7,6 +7,7 @@
 
 mod scene;
 mod tables;
+mod yaml;
 
 use super::expression::{ForeignExpr, ForeignKind};
 use super::model::{ForeignConstant, ForeignModel, ForeignOutput};
@@ -17,8 +18,9 @@ use palmistry_io::foreign::Budget;
 use palmistry_lang::{Problem, ReadError, System, with_plain_line_ends};
 use palmistry_math::number::parse_decimal;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Component, Path};
 use tables::{Row, Table};
+use yaml::Yaml;
 
 /// A file of a problem.
 #[derive(Clone, Debug)]
@@ -31,6 +33,23 @@ pub struct PetabFile {
 
 /// Reads a file that a problem names, from the folder in which the problem lies.
 pub type PetabLoader<'l> = dyn Fn(&str) -> Result<PetabFile, String> + Sync + 'l;
+
+/// Reads what a problem names: files beside or below it, and no others, for a problem may be a stranger's.
+pub fn petab_beside(problem: &Path) -> impl Fn(&str) -> Result<PetabFile, String> + Sync + use<> {
+    let folder = problem.parent().unwrap_or(Path::new("")).to_owned();
+    move |name: &str| {
+        let named = Path::new(name);
+        let is_inside =
+            named.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+        if !is_inside {
+            return Err("it lies outside of the folder of the problem".to_owned());
+        }
+        let path = folder.join(named);
+        let text =
+            palmistry_io::file::read_text(&path, ALLOWANCE.bytes as u64).map_err(|why| why.to_string())?;
+        Ok(PetabFile { name: palmistry_io::foreign::name_of(&path), text })
+    }
+}
 
 /// A problem as files of ours.
 #[derive(Clone, Debug)]
@@ -55,39 +74,6 @@ pub struct ImportedProblem {
 pub fn is_petab(text: &str) -> bool {
     let begins = |word: &str| text.lines().any(|line| line.starts_with(word));
     begins("parameter_file") && begins("problems")
-}
-
-#[derive(serde::Deserialize)]
-#[serde(untagged)]
-enum OneOrMore {
-    One(String),
-    More(Vec<String>),
-}
-
-#[derive(serde::Deserialize)]
-#[serde(untagged)]
-enum Version {
-    Number(f64),
-    Text(String),
-}
-
-#[derive(serde::Deserialize)]
-struct Yaml {
-    format_version: Option<Version>,
-    parameter_file: OneOrMore,
-    problems: Vec<YamlProblem>,
-}
-
-#[derive(serde::Deserialize)]
-struct YamlProblem {
-    #[serde(default)]
-    sbml_files: Vec<String>,
-    #[serde(default)]
-    condition_files: Vec<String>,
-    #[serde(default)]
-    measurement_files: Vec<String>,
-    #[serde(default)]
-    observable_files: Vec<String>,
 }
 
 /// Reads a problem. `stem` is what its files will be called: `stem.proof`, `stem.toml` and `stem.csv`.
@@ -115,26 +101,30 @@ fn read(name: &str, text: &str, stem: &str, load: &PetabLoader<'_>) -> Result<Im
     let refused = |message: String, help: &str| {
         Problem::new(&(0..text.len().min(1)), message, "the file").help(help).locate(name, text)
     };
-    let yaml: Yaml = serde_saphyr::from_str(text).map_err(|why| {
-        refused(format!("this is no PEtab problem: {why}"), "PEtab 1.0 names parameter_file and problems")
-    })?;
-    let is_first = match &yaml.format_version {
-        None => true,
-        Some(Version::Number(number)) => *number < 2.0,
-        Some(Version::Text(text)) => text.trim().starts_with('1'),
+    let yaml = Yaml::read(text).map_err(|problem| problem.locate(name, text))?;
+    let no_problem = || {
+        refused(
+            "this is no PEtab problem: it does not name 'parameter_file' and 'problems'".to_owned(),
+            "PEtab 1.0 names both, and the tables of the problem",
+        )
     };
-    if !is_first {
+    let version = yaml.get("format_version").and_then(Yaml::text).unwrap_or("1").trim();
+    if !version.starts_with('1') {
         return Err(refused(
             "PEtab of this version is not read".to_owned(),
             "version 1 is: petab-python converts between them",
         ));
     }
-    let [problem] = yaml.problems.as_slice() else {
-        let message = format!("the file has {} problems", yaml.problems.len());
+    let parameters = yaml.get("parameter_file").and_then(Yaml::texts).ok_or_else(no_problem)?;
+    let Some(Yaml::List(problems)) = yaml.get("problems") else { return Err(no_problem()) };
+    let [problem] = problems.as_slice() else {
+        let message = format!("the file has {} problems", problems.len());
         return Err(refused(message, "one is read: write each into a file of its own"));
     };
-    let [model] = problem.sbml_files.as_slice() else {
-        let message = format!("the problem has {} SBML files", problem.sbml_files.len());
+    let files_of = |key: &str| problem.get(key).and_then(Yaml::texts).unwrap_or_default();
+    let models = files_of("sbml_files");
+    let [model] = models.as_slice() else {
+        let message = format!("the problem has {} SBML files", models.len());
         return Err(refused(message, "one model is read"));
     };
     let all = |names: &[String]| -> Result<Vec<PetabFile>, ReadError> {
@@ -148,16 +138,12 @@ fn read(name: &str, text: &str, stem: &str, load: &PetabLoader<'_>) -> Result<Im
         };
         names.iter().map(one).collect()
     };
-    let parameters = match yaml.parameter_file {
-        OneOrMore::One(file) => vec![file],
-        OneOrMore::More(files) => files,
-    };
     let files = Files {
         model: all(std::slice::from_ref(model))?.remove(0),
         parameters: all(&parameters)?,
-        conditions: all(&problem.condition_files)?,
-        observables: all(&problem.observable_files)?,
-        measurements: all(&problem.measurement_files)?,
+        conditions: all(&files_of("condition_files"))?,
+        observables: all(&files_of("observable_files"))?,
+        measurements: all(&files_of("measurement_files"))?,
     };
     let title =
         Path::new(name).file_stem().map_or(name.to_owned(), |stem| stem.to_string_lossy().into_owned());
@@ -528,6 +514,11 @@ impl<'f> Reading<'f> {
             value: ForeignExpr::name(id, &(0..0)),
         };
         self.model.outputs = self.observables.iter().map(output).collect();
+        // nobody is without a clock
+        if let Some(clock) = &self.model.clock {
+            let value = ForeignExpr::name(clock, &(0..0));
+            self.model.outputs.push(ForeignOutput { name: None, value });
+        }
         self.model.remarks =
             vec!["initial values stand in the scene: the rank is decided for unknown ones".to_owned()];
     }

@@ -95,7 +95,7 @@ impl Reading<'_> {
             }
             let _ = writeln!(out, "{} = {}", names.ours(id), inline(&pairs));
         }
-        out.push_str("\n# what is sought: within bounds, on a scale; the nominal values are published ones\n[parameters]\n");
+        out.push_str("\n# what is estimated: within bounds, on a scale; the nominal values are published ones\n[parameters]\n");
         for (name, one) in self.parameters.iter().filter(|(_, one)| one.is_sought) {
             let mut pairs = Vec::new();
             if let Some([low, high]) = one.bounds {

@@ -5,7 +5,8 @@ mod plot;
 mod tables;
 
 pub use page::joint_page;
-use palmistry_fit::{ParameterProfile, ParameterScale, Simulated, SoughtParameter, StartEnd};
+pub(crate) use page::joint_section;
+use palmistry_fit::{ParameterProfile, ParameterScale, SimulatedExperiments, SoughtParameter, StartEnd};
 use palmistry_scenes::joint::{JointAnswer, JointExperiments};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -20,6 +21,13 @@ pub struct JointObserved<'a> {
     pub answer: &'a JointAnswer,
     /// Whether somebody ended it early.
     pub interrupted: bool,
+}
+
+impl<'a> JointObserved<'a> {
+    /// Of a fit that came to its end.
+    pub fn of(experiments: &'a JointExperiments, answer: &'a JointAnswer) -> JointObserved<'a> {
+        JointObserved { experiments, answer, interrupted: false }
+    }
 }
 
 /// Half of an interval of 95 %, in deviations.
@@ -121,14 +129,14 @@ fn with_deviation(entry: &Entry<'_>) -> String {
     let spread = match (entry.deviation, entry.parameter.scale) {
         (None, _) => return String::new(),
         (Some(deviation), _) if !deviation.is_finite() => return "infinite".to_owned(),
-        (Some(deviation), ParameterScale::Linear) => return format!("+- {}", short(deviation)),
+        (Some(deviation), ParameterScale::Linear) => return format!("± {}", short(deviation)),
         (Some(deviation), ParameterScale::Log) => deviation,
         (Some(deviation), ParameterScale::Log10) => deviation * std::f64::consts::LN_10,
     };
     match spread {
-        small if small < 0.2 => format!("+- {:.2} %", 100.0 * small),
-        _ if spread < 7.0 => format!("*/ {:.2}", spread.exp()),
-        _ => format!("*/ 1e{:.0}", spread / std::f64::consts::LN_10),
+        small if small < 0.2 => format!("± {:.2} %", 100.0 * small),
+        _ if spread < 7.0 => format!("×/÷ {:.2}", spread.exp()),
+        _ => format!("×/÷ 1e{:.0}", spread / std::f64::consts::LN_10),
     }
 }
 
@@ -233,7 +241,7 @@ fn ending(observed: &JointObserved<'_>) -> Vec<String> {
                     own.probability,
                     if own.fits() { "the model explains the measurements" } else { "the model does not explain them" }
                 ),
-                None => "no test of fit: the size of the errors is sought, or they are not normal, or there are priors".to_owned(),
+                None => "no test of fit: the size of the errors is estimated, or they are not normal, or there are priors".to_owned(),
             });
         }
     }
@@ -251,7 +259,7 @@ pub fn joint_text(observed: &JointObserved<'_>) -> String {
     if !all.is_empty() {
         let width = all.iter().map(|entry| entry.parameter.name.chars().count()).max().unwrap_or(0).max(9);
         let has_profiles = all.iter().any(|entry| entry.profile.is_some());
-        let _ = writeln!(out, "\n  {:width$}  {:>12}  {:>14}  {}", "parameter", "value", "deviation", "");
+        let _ = writeln!(out, "\n  {:width$}  {:>12}  {:>14}", "parameter", "value", "deviation");
         for entry in &all {
             let _ = write!(
                 out,
@@ -291,7 +299,7 @@ fn finite(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
 }
 
-fn measurements_json(observed: &JointObserved<'_>, simulated: &Simulated) -> Value {
+fn measurements_json(observed: &JointObserved<'_>, simulated: &SimulatedExperiments) -> Value {
     let problem = observed.experiments.problem();
     let rows = problem.measurements.iter().enumerate().map(|(row, one)| {
         json!({
@@ -307,7 +315,7 @@ fn measurements_json(observed: &JointObserved<'_>, simulated: &Simulated) -> Val
     Value::Array(rows.collect())
 }
 
-fn simulated_json(observed: &JointObserved<'_>, simulated: &Simulated) -> Value {
+fn simulated_json(observed: &JointObserved<'_>, simulated: &SimulatedExperiments) -> Value {
     json!({
         "log_likelihood": simulated.log_likelihood,
         "objective": simulated.objective,
@@ -396,6 +404,7 @@ pub fn joint_json(observed: &JointObserved<'_>) -> Value {
     json!({
         "title": observed.experiments.scene.title,
         "kind": "experiments",
+        "seed": observed.experiments.scene.seed,
         "experiments": problem.experiments.iter().map(|one| &one.name).collect::<Vec<_>>(),
         "parameters": parameters,
         "nominal": nominal,

@@ -4,7 +4,7 @@ use super::plot::{MOST_PICTURES, compared, ends, profile, residuals};
 use super::{JointObserved, direction_words, ending, entries, heading, short, weak, with_deviation};
 use crate::document::document;
 use maud::{Markup, PreEscaped, html};
-use palmistry_fit::Simulated;
+use palmistry_fit::SimulatedExperiments;
 
 fn parameters(observed: &JointObserved<'_>) -> Markup {
     let all = entries(observed);
@@ -20,7 +20,7 @@ fn parameters(observed: &JointObserved<'_>) -> Markup {
                 tbody { @for entry in &all { tr {
                     td { (entry.parameter.name) }
                     td.n { (short(entry.value())) }
-                    td.n { (with_deviation(entry).replace("+-", "±").replace("*/", "×/÷")) }
+                    td.n { (with_deviation(entry)) }
                     td { (entry.parameter.scale.word()) }
                     td.n { (short(entry.parameter.bounds[0])) " to " (short(entry.parameter.bounds[1])) }
                     td.n { (entry.parameter.nominal.map_or(String::new(), short)) }
@@ -42,7 +42,7 @@ fn parameters(observed: &JointObserved<'_>) -> Markup {
     }
 }
 
-fn pictures(observed: &JointObserved<'_>, simulated: &Simulated) -> Markup {
+fn pictures(observed: &JointObserved<'_>, simulated: &SimulatedExperiments) -> Markup {
     let problem = observed.experiments.problem();
     let mut pairs: Vec<(usize, &str)> = Vec::new();
     for one in &problem.measurements {
@@ -59,16 +59,40 @@ fn pictures(observed: &JointObserved<'_>, simulated: &Simulated) -> Markup {
     }
 }
 
-/// The page as HTML.
-pub fn joint_page(observed: &JointObserved<'_>) -> String {
-    let answer = observed.answer;
-    let shown = match (&answer.fit, &answer.nominal) {
+/// What is shown as expected, and at which parameters.
+fn shown<'a>(observed: &JointObserved<'a>) -> Option<(&'a SimulatedExperiments, &'static str)> {
+    match (&observed.answer.fit, &observed.answer.nominal) {
         (Some(Ok(fit)), _) => Some((&fit.simulated, "Measured and expected, at the best parameters")),
         (_, Some(own)) => {
             own.simulated.as_ref().ok().map(|own| (own, "Measured and expected, at the nominal values"))
         }
         _ => None,
-    };
+    }
+}
+
+/// Scenes of several experiments, as a section of the page of a paper.
+pub(crate) fn joint_section(all: &[JointObserved<'_>]) -> Markup {
+    html! {
+        section #experiments {
+            h2 { "Experiments fitted together" }
+            p {
+                "Each scene has experiments with conditions of their own and one set of parameters. "
+                code { "palmistry observe" } " writes a page of its own for each, with searches and residuals."
+            }
+            @for observed in all {
+                h3 { (observed.experiments.scene.title) }
+                p { (heading(observed)) "." }
+                ul { @for line in ending(observed) { li { (line) } } }
+                (parameters(observed))
+                @if let Some((simulated, _)) = shown(observed) { (pictures(observed, simulated)) }
+            }
+        }
+    }
+}
+
+/// The page as HTML.
+pub fn joint_page(observed: &JointObserved<'_>) -> String {
+    let answer = observed.answer;
     let content = html! {
         header {
             h1 { (observed.experiments.scene.title) }
@@ -81,7 +105,7 @@ pub fn joint_page(observed: &JointObserved<'_>) -> String {
                 ul { @for line in ending(observed) { li { (line) } } }
             }
             section #parameters { h2 { "Parameters" } (parameters(observed)) }
-            @if let Some((simulated, title)) = shown {
+            @if let Some((simulated, title)) = shown(observed) {
                 section #compared { h2 { (title) } (pictures(observed, simulated)) }
             }
             @if let Some(Ok(fit)) = &answer.fit {

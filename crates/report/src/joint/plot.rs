@@ -3,7 +3,7 @@
 use super::JointObserved;
 use crate::axis::number;
 use crate::drawing::{INK, MESH, svg};
-use palmistry_fit::{ParameterProfile, ParameterScale, Simulated};
+use palmistry_fit::{ParameterProfile, ParameterScale, SimulatedExperiments};
 use plotters::prelude::*;
 
 const MEASURED: RGBColor = RGBColor(0, 114, 178);
@@ -38,7 +38,7 @@ fn around(values: impl Iterator<Item = f64>) -> (f64, f64) {
 /// An output of an experiment: points with two deviations of their errors, and what is expected at those times.
 pub(super) fn compared(
     observed: &JointObserved<'_>,
-    simulated: &Simulated,
+    simulated: &SimulatedExperiments,
     experiment: usize,
     output: &str,
 ) -> String {
@@ -149,7 +149,7 @@ pub(super) fn ends(objectives: &[f64]) -> String {
 }
 
 /// The residuals over the sizes of their errors, in the order of the measurements, a colour an output; 95 % lie between the lines.
-pub(super) fn residuals(observed: &JointObserved<'_>, simulated: &Simulated) -> String {
+pub(super) fn residuals(observed: &JointObserved<'_>, simulated: &SimulatedExperiments) -> String {
     let problem = observed.experiments.problem();
     let mut outputs: Vec<&str> = Vec::new();
     for one in &problem.measurements {

@@ -1,7 +1,7 @@
-//! Simulated values and parameters as the tables of a PEtab problem.
+//! SimulatedExperiments values and parameters as the tables of a PEtab problem.
 
 use super::JointObserved;
-use palmistry_fit::Simulated;
+use palmistry_fit::SimulatedExperiments;
 use std::fmt::Write;
 
 /// A cell of a table: no tab or end of line in it.
@@ -11,7 +11,7 @@ fn cell(text: &str) -> String {
 
 /// The simulation at the best parameters, else at the nominal ones, as a table of PEtab; none where nothing could be simulated.
 pub fn joint_simulation(observed: &JointObserved<'_>) -> Option<String> {
-    let simulated: &Simulated = match (&observed.answer.fit, &observed.answer.nominal) {
+    let simulated: &SimulatedExperiments = match (&observed.answer.fit, &observed.answer.nominal) {
         (Some(Ok(fit)), _) => &fit.simulated,
         (_, Some(nominal)) => nominal.simulated.as_ref().ok()?,
         _ => return None,

@@ -3,6 +3,7 @@
 use crate::certificate::answer::region_json;
 use crate::claims::outcomes::{claim_json, claim_line};
 use crate::claims::words::{counts, counts_text, errors};
+use crate::joint::{JointObserved, joint_json};
 use crate::layout::counted;
 use crate::motion::answers::{Observed, observe_json};
 use crate::ranks::answer::rank_json;
@@ -203,6 +204,8 @@ pub fn findings_json(found: &Findings) -> Value {
             slow_json(&SlowObserved::of(experiment, answers))
         })).chain(found.space.iter().map(|(experiment, answers)| {
             space_json(&SpaceObserved::of(experiment, answers))
+        })).chain(found.joint.iter().map(|(experiments, answer)| {
+            joint_json(&JointObserved::of(experiments, answer))
         })).collect::<Vec<_>>(),
         "seconds": found.seconds,
     })

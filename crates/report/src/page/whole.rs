@@ -8,6 +8,7 @@ use super::regime::{file_section, has_a_section};
 use super::source::sources;
 use crate::axis::unit_of;
 use crate::document::document;
+use crate::joint::{JointObserved, joint_section};
 use crate::motion::answers::Observed;
 use crate::motion::section::observed_section;
 use crate::slow_observed::SlowObserved;
@@ -19,13 +20,14 @@ use palmistry_prove::claim::Outcome;
 use palmistry_workbench::paper::Findings;
 
 /// The names of the sections, which nothing else on the page may have.
-const SECTIONS: [&str; 14] = [
+const SECTIONS: [&str; 15] = [
     "equations",
     "errata",
     "extremes",
     "observers",
     "slow",
     "space",
+    "experiments",
     "claims",
     "sources",
     "filter",
@@ -58,6 +60,8 @@ pub fn page_with(found: &Findings, theorems: &TheoremAddresses) -> String {
         found.slow.iter().map(|(experiment, answers)| SlowObserved::of(experiment, answers)).collect();
     let space: Vec<SpaceObserved<'_>> =
         found.space.iter().map(|(experiment, answers)| SpaceObserved::of(experiment, answers)).collect();
+    let joint: Vec<JointObserved<'_>> =
+        found.joint.iter().map(|(experiments, answer)| JointObserved::of(experiments, answer)).collect();
     let files: Vec<&str> = found.files.iter().map(|file| stem(&file.system.name)).collect();
     let systems: Vec<_> = found.files.iter().map(|file| &file.system).collect();
     let sections = || found.files.iter().zip(&names).filter(|(file, _)| has_a_section(file));
@@ -71,6 +75,7 @@ pub fn page_with(found: &Findings, theorems: &TheoremAddresses) -> String {
             @if !experiments.is_empty() { a href="#observers" { "Bodies in motion" } }
             @if !slow.is_empty() { a href="#slow" { "Bodies at rest" } }
             @if !space.is_empty() { a href="#space" { "Bodies in space" } }
+            @if !joint.is_empty() { a href="#experiments" { "Experiments" } }
             a href="#claims" { "All claims" }
             a href="#sources" { "The proof files" }
         }))
@@ -82,6 +87,7 @@ pub fn page_with(found: &Findings, theorems: &TheoremAddresses) -> String {
             @if !experiments.is_empty() { (observed_section(&experiments)) }
             @if !slow.is_empty() { (slow_section(&slow)) }
             @if !space.is_empty() { (space_section(&space)) }
+            @if !joint.is_empty() { (joint_section(&joint)) }
             (all_claims(&claims, &anchors, &files))
             (sources(&systems, &anchors))
         }

@@ -66,7 +66,7 @@ impl<'s> Building<'s> {
             if sought.contains(&symbol) {
                 return Err(scene.error_at(
                     &place,
-                    format!("'{name}' is sought, and cannot be known"),
+                    format!("'{name}' is estimated, and cannot be known"),
                     "take it out of [parameters], or from here",
                 ));
             }

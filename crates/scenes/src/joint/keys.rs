@@ -246,7 +246,7 @@ fn checked(keys: Keys, places: &Places<'_>, name: &str, text: &str) -> Result<Jo
     if keys.parameters.is_empty() {
         return wrong(
             "parameters",
-            "no parameter is sought".to_owned(),
+            "no parameter is estimated".to_owned(),
             "add, for instance: k = { bounds = [1e-5, 1e5] }",
         );
     }
@@ -279,7 +279,7 @@ fn checked(keys: Keys, places: &Places<'_>, name: &str, text: &str) -> Result<Jo
         if scale != ParameterScale::Linear && low <= 0.0 {
             return wrong(
                 &format!("{place}.bounds"),
-                format!("{low} has no logarithm, and '{name}' is sought by it"),
+                format!("{low} has no logarithm, and '{name}' is estimated by it"),
                 "give a lower bound above zero, or scale = \"linear\"",
             );
         }
@@ -298,7 +298,7 @@ fn checked(keys: Keys, places: &Places<'_>, name: &str, text: &str) -> Result<Jo
             return wrong(
                 &format!("{place}.nominal"),
                 format!("{nominal} is no value on this scale"),
-                "give a finite number, above zero where a logarithm is sought",
+                "give a finite number, above zero where a logarithm is estimated",
             );
         }
         let prior = own.prior.map(|own| Prior {

@@ -2,8 +2,8 @@
 
 use super::keys::JointScene;
 use palmistry_fit::{
-    ErrorLaw, Exactness, Information, JointFit, JointProblem, Likelihood, ParameterProfile, Simulated, fit,
-    profile,
+    ErrorLaw, Exactness, Information, JointFit, JointProblem, Likelihood, ParameterProfile,
+    SimulatedExperiments, fit, profile,
 };
 use palmistry_lang::ReadError;
 use palmistry_observe::exceeded_with;
@@ -12,6 +12,9 @@ use std::path::Path;
 
 /// A parameter lies at a bound that is nearer to it than this part of the range.
 const AT_BOUND: f64 = 1e-6;
+
+/// States and their derivatives at all times of measurement are held at once: so many numbers at most.
+const MOST_NUMBERS: usize = 50_000_000;
 
 /// A fit whose residuals are so large by chance less often than this is none.
 const FALSE_ALARM: f64 = 0.01;
@@ -40,7 +43,7 @@ pub struct NominalAnswer {
     /// The values, on the scales of the parameters.
     pub place: Vec<f64>,
     /// What they come to, or why nothing.
-    pub simulated: Result<Simulated, String>,
+    pub simulated: Result<SimulatedExperiments, String>,
 }
 
 /// What all experiments tell together.
@@ -86,6 +89,22 @@ impl JointExperiments {
     /// What is wrong with the model, the scene or the measurements, and where.
     pub fn new(scene: JointScene, data: Option<&Path>) -> Result<JointExperiments, ReadError> {
         let problem = scene.problem(data)?;
+        let times: std::collections::BTreeSet<(usize, u64)> =
+            problem.measurements.iter().map(|one| (one.experiment, one.time.to_bits())).collect();
+        let numbers = times.len().saturating_mul(problem.states.len() * (1 + problem.parameters.len()));
+        if numbers > MOST_NUMBERS {
+            let message = format!(
+                "{} times of measurement with {} states and {} parameters take {numbers} numbers, and at most {MOST_NUMBERS} are held",
+                times.len(),
+                problem.states.len(),
+                problem.parameters.len()
+            );
+            return Err(scene.error_at(
+                "measurements",
+                message,
+                "take every tenth measurement, or estimate fewer parameters",
+            ));
+        }
         let likelihood = Likelihood::new(problem).map_err(|name| {
             let help =
                 format!("add '{name}' to [known] or to [parameters], or set it in each experiment or row");
@@ -155,7 +174,7 @@ impl JointExperiments {
         self.problem().parameters.iter().zip(found).map(is_at).collect()
     }
 
-    fn goodness(&self, simulated: &Simulated, at_bounds: &[bool]) -> Option<GoodnessOfFit> {
+    fn goodness(&self, simulated: &SimulatedExperiments, at_bounds: &[bool]) -> Option<GoodnessOfFit> {
         let problem = self.problem();
         let sought: Vec<_> = problem.parameters.iter().map(|one| one.symbol).collect();
         let sizes = problem.system.graph.symbols_of(problem.measurements.iter().map(|one| one.size));

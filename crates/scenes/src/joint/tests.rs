@@ -80,7 +80,7 @@ fn mistakes_are_named_where_they_are() {
     for (from, to, message) in [
         ("[known]\ns = 3", "", "nothing says what 's' is"),
         ("s = 3", "s = inf", "inf is no finite number"),
-        ("s = 3", "k = 3", "'k' is sought, and cannot be known"),
+        ("s = 3", "k = 3", "'k' is estimated, and cannot be known"),
         ("s = 3", "both = 3", "'both' is defined by the model, and no parameter"),
         ("y = \"x/4\"", "", "nothing says what 'y' is at the start"),
         ("x = \"2*a\"", "x = \"y\"", "the start of 'x' depends on itself"),
@@ -90,7 +90,7 @@ fn mistakes_are_named_where_they_are() {
         (
             "[-5, 5], nominal = 1.5",
             "[-5, 5], scale = \"log\"",
-            "-5 has no logarithm, and 'a' is sought by it",
+            "-5 has no logarithm, and 'a' is estimated by it",
         ),
         ("nominal = 0.5", "nominal = -0.5", "-0.5 is no value on this scale"),
         ("nominal = 0.5", "starts = [1e-4, 1]", "[0.0001, 1] is no range within the bounds"),

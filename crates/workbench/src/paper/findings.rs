@@ -10,6 +10,7 @@ use palmistry_lang::System;
 use palmistry_prove::certificate::RegionAnswer;
 use palmistry_prove::claim::Outcome;
 use palmistry_prove::drops::DropAnswer;
+use palmistry_scenes::joint::{JointAnswer, JointExperiments};
 use palmistry_scenes::slow::{SlowAnswers, SlowExperiment};
 use palmistry_scenes::space::{SpaceAnswers, SpaceExperiment};
 use palmistry_scenes::{Answer, Experiment};
@@ -97,6 +98,8 @@ pub struct Findings {
     pub slow: Vec<(SlowExperiment, SlowAnswers)>,
     /// Bodies in space on three palms, and what their readings tell.
     pub space: Vec<(SpaceExperiment, SpaceAnswers)>,
+    /// Several experiments with one set of parameters, and what they tell together.
+    pub joint: Vec<(JointExperiments, JointAnswer)>,
     /// The seed of all that is drawn.
     pub seed: u64,
     /// Whether it was stopped before the end.
@@ -114,6 +117,7 @@ impl Findings {
             experiments: Vec::new(),
             slow: Vec::new(),
             space: Vec::new(),
+            joint: Vec::new(),
             seed,
             interrupted: false,
             seconds: 0.0,
@@ -131,5 +135,6 @@ impl Findings {
             && self.files.iter().all(FileFindings::ok)
             && self.slow.iter().all(|(_, answers)| answers.explained)
             && self.space.iter().all(|(_, answers)| answers.as_expected())
+            && self.joint.iter().all(|(_, answer)| answer.as_expected())
     }
 }

@@ -100,7 +100,9 @@ fn is_a_scene_file(path: &Path) -> bool {
     let is_named_so = path.extension().is_some_and(|end| end == "toml");
     let table = load(path).ok().and_then(|text| toml::from_str::<toml::Table>(&text).ok());
     let is_one = |table: toml::Table| {
-        table.contains_key("motion") || table.get("observer").is_some_and(toml::Value::is_table)
+        table.contains_key("motion")
+            || table.contains_key("experiments")
+            || table.get("observer").is_some_and(toml::Value::is_table)
     };
     is_named_so && table.is_some_and(is_one)
 }

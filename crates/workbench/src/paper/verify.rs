@@ -15,6 +15,7 @@ use palmistry_math::expression::syntax::{Expr, ExprKind};
 use palmistry_prove::certificate::certify_region;
 use palmistry_prove::claim::{decide_all, isolated};
 use palmistry_prove::drops::where_it_drops;
+use palmistry_scenes::joint::{JointExperiments, JointScene};
 use palmistry_scenes::slow::{SlowExperiment, SlowScene};
 use palmistry_scenes::space::{SpaceExperiment, SpaceScene};
 use palmistry_scenes::{Experiment, Scene};
@@ -120,6 +121,7 @@ pub fn verify_into(
 enum Observable {
     Slow(Box<SlowExperiment>),
     Space(Box<SpaceExperiment>),
+    Joint(Box<JointExperiments>),
     Moving(Box<Experiment>),
 }
 
@@ -131,10 +133,13 @@ impl Observable {
         if let Some(scene) = SlowScene::read(path) {
             return Ok(Observable::Slow(Box::new(SlowExperiment::new(scene?, None)?)));
         }
+        if let Some(scene) = JointScene::read(path) {
+            return Ok(Observable::Joint(Box::new(JointExperiments::new(scene?, None)?)));
+        }
         Ok(Observable::Moving(Box::new(Experiment::new(Scene::read(path)?, None)?)))
     }
 
-    /// What its readings tell; of a scene at rest or in space only what was followed to its end.
+    /// What its readings tell; of a scene at rest, in space or of several experiments only what was followed to its end.
     fn observe(self, run: &Run<'_>) -> Result<(), ReadError> {
         match self {
             Observable::Slow(experiment) => {
@@ -147,6 +152,12 @@ impl Observable {
                 let answers = experiment.run(&|| run.stopped(), &|| ());
                 if !run.stopped() {
                     run.found().space.push((*experiment, answers));
+                }
+            }
+            Observable::Joint(experiments) => {
+                let answer = experiments.run(&|| run.stopped(), &|| ());
+                if !run.stopped() {
+                    run.found().joint.push((*experiments, answer));
                 }
             }
             Observable::Moving(experiment) => {
