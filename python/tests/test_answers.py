@@ -121,7 +121,7 @@ class TheProgram(unittest.TestCase):
         problem = path("examples", "petab", "Perelson_Science1996", "Perelson_Science1996.yaml")
         with tempfile.TemporaryDirectory() as folder:
             here = palmistry.import_problem(problem, os.path.join(folder, "here.toml"))
-            there = program("import", problem, "--json")
+            there = program("import", problem)
             for end, name in ((".proof", "proof"), (".csv", "measurements")):
                 with open(here.with_suffix(end), encoding="utf-8") as file:
                     self.assertEqual(file.read(), there[name])

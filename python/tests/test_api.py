@@ -110,7 +110,7 @@ class Api(unittest.TestCase):
         self.assertEqual(silent, [])
 
     def test_examples_in_docstrings(self):
-        names = {"pathlib": pathlib, "tempfile": tempfile, "numpy": numpy, "palmistry": palmistry, "ROOT": ROOT, "rod": palmistry.System.parse(PENDULUM)}
+        names = {"pathlib": pathlib, "tempfile": tempfile, "numpy": numpy, "palmistry": palmistry, "ROOT": ROOT, "problem": os.path.join(ROOT, "examples", "petab", "Perelson_Science1996", "Perelson_Science1996.yaml"), "rod": palmistry.System.parse(PENDULUM)}
         for module in ("answers", "cluster", "observing", "program", "studies", "system", "tables", "traced", "translation"):
             found = doctest.testmod(importlib.import_module(f"palmistry.{module}"), extraglobs=names, optionflags=doctest.ELLIPSIS)
             with self.subTest(module):
