@@ -6,6 +6,9 @@ use nalgebra::{DMatrix, SymmetricEigen};
 /// Of a direction whose information is below this part of the largest nothing is told but by rounding.
 const ROUNDING: f64 = 1e-13;
 
+/// The eigenvalues take no more sweeps than these.
+const MOST_ITERATIONS: usize = 10_000;
+
 /// A parameter takes part in a direction by more than this part of its largest.
 const PART: f64 = 0.1;
 
@@ -39,7 +42,11 @@ impl Information {
         if free.is_empty() {
             return Information { deviations, covariance: None, directions: Vec::new() };
         }
-        let eigen = SymmetricEigen::new(own);
+        let Some(eigen) = SymmetricEigen::try_new(own, f64::EPSILON, MOST_ITERATIONS) else {
+            // what is not known to be told is not
+            free.iter().for_each(|place| deviations[*place] = Some(f64::INFINITY));
+            return Information { deviations, covariance: None, directions: Vec::new() };
+        };
         let largest = eigen.eigenvalues.max();
         let is_told = |value: f64| value > ROUNDING * largest && value > 0.0;
         for (i, place) in free.iter().enumerate() {

@@ -102,7 +102,7 @@ pub fn fit(
     let one = |number: usize| {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         random.set_stream(number as u64);
-        let wanted = if number % 2 == 0 { 1 } else { CANDIDATES };
+        let wanted = if number.is_multiple_of(2) { 1 } else { CANDIDATES };
         let found = from_draws(likelihood, &mut random, (steps, wanted), interrupted);
         done();
         found

@@ -146,8 +146,8 @@ impl CompiledPhase {
         }
         let mut derivatives = vec![0.0; self.switches.by_states.len() + self.switches.by_parameters.len()];
         let mut found: Vec<(f64, DVector<f64>)> = Vec::new();
-        for row in 0..self.switches.rows {
-            let [a, b, c] = [0, 1, 2].map(|time: usize| values[time][row]);
+        let [first, second, third] = &values;
+        for (row, ((a, b), c)) in first.iter().zip(second).zip(third).enumerate() {
             let slope = b - a;
             let is_straight = (c - 2.0 * b + a).abs() <= 1e-9 * (a.abs() + b.abs() + c.abs());
             let time = -a / slope;
@@ -360,6 +360,12 @@ const MORE: f64 = 500.0;
 /// Steps times the norm of the Jacobian matrix above this are as long as stability allows.
 const STABLE: f64 = 1.0;
 
+/// Rates at states, parameters and a time.
+type Rate<'r> = dyn Fn(&[f64], &[f64], f64, &mut [f64]) + 'r;
+
+/// A norm of the Jacobian matrix at states.
+type Norm<'n> = dyn Fn(&[f64]) -> f64 + 'n;
+
 /// What is to be followed.
 struct Way<'w> {
     from: f64,
@@ -369,7 +375,7 @@ struct Way<'w> {
     /// The parameters that have sensitivities, of all.
     sought: &'w [usize],
     all: usize,
-    rate: &'w dyn Fn(&[f64], &[f64], f64, &mut [f64]),
+    rate: &'w Rate<'w>,
     interrupted: &'w dyn Fn() -> bool,
 }
 
@@ -379,7 +385,7 @@ impl Way<'_> {
         &self,
         solver: &mut S,
         mut found: Vec<Moment>,
-        norm: Option<&dyn Fn(&[f64]) -> f64>,
+        norm: Option<&Norm<'_>>,
     ) -> Result<(Vec<Moment>, Option<Moment>), Stopped>
     where
         E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 's,

@@ -11,11 +11,14 @@ const NEVER: fn() -> bool = || false;
 /// What is measured: experiment, output, time, value, size.
 type Row<'a> = (usize, &'a str, f64, f64, &'a str);
 
+/// What is set, and where the states start.
+type Conditions<'a> = (&'a [(&'a str, &'a str)], &'a [Option<&'a str>]);
+
 /// Parameters `[name, low, high]` of a system, experiments as values of other parameters with the starts of its states, and measurements.
 struct Made<'a> {
     text: &'a str,
     parameters: &'a [(&'a str, f64, f64, ParameterScale)],
-    experiments: &'a [(&'a [(&'a str, &'a str)], Option<&'a [&'a str]>, &'a [Option<&'a str>])],
+    experiments: &'a [Conditions<'a>],
     rows: &'a [Row<'a>],
     clock: Option<usize>,
 }
@@ -41,20 +44,16 @@ impl Made<'_> {
         let value =
             |system: &mut System, text: &str| system.evaluate_text(text).unwrap().as_number().unwrap();
         let mut experiments = Vec::new();
-        for (set, before, start) in self.experiments {
+        for (set, start) in self.experiments {
             let settings: std::collections::HashMap<_, _> = set
                 .iter()
                 .map(|(name, text)| (system.find_symbol(name).unwrap(), value(&mut system, text)))
                 .collect();
             let own = system.graph.substitute(&rates, &settings);
             let start = start.iter().map(|one| one.map(|text| value(&mut system, text))).collect();
-            let before = before.map(|start| Phase {
-                rates: rates.clone(),
-                start: start.iter().map(|text| Some(value(&mut system, text))).collect(),
-            });
             experiments.push(JointExperiment {
                 name: format!("e{}", experiments.len()),
-                before,
+                before: None,
                 phase: Phase { rates: own, start },
             });
         }
@@ -127,7 +126,7 @@ fn a_decay_is_as_its_closed_form() {
             ("a", -10.0, 10.0, LINEAR),
             ("s", 1e-3, 1e2, ParameterScale::Log),
         ],
-        experiments: &[(&[], None, &[Some("a")])],
+        experiments: &[(&[], &[Some("a")])],
         rows: &rows,
         clock: None,
     };
@@ -168,7 +167,7 @@ fn a_stiff_system_is_followed_with_its_derivatives() {
     let made = Made {
         text: "system \"robertson\"\nstate x, y, z\nparam a, b, c unknown\ndrift f\n  x' = -a*x + b*y*z\n  y' = a*x - b*y*z - c*y^2\n  z' = c*y^2\noutput x\n",
         parameters: &[("a", 1e-4, 1e1, LOG10), ("b", 1e2, 1e6, LOG10), ("c", 1e5, 1e9, LOG10)],
-        experiments: &[(&[], None, &[Some("1"), Some("0"), Some("0")])],
+        experiments: &[(&[], &[Some("1"), Some("0"), Some("0")])],
         rows: &rows,
         clock: None,
     };
@@ -192,7 +191,7 @@ fn rest_is_found_with_its_derivatives() {
         text: "system \"rest\"\nstate x, t\nparam a, b unknown\nparam u = 1\ndrift f\n  x' = a - b*u*x\n  t' = 1\noutput x\n",
         parameters: &[("a", 1e-3, 1e3, LOG10), ("b", 1e-3, 1e3, LOG10)],
         // u is one before, and two in the experiment; the clock begins again
-        experiments: &[(&[("u", "2")], None, &[Some("3"), Some("0")])],
+        experiments: &[(&[("u", "2")], &[Some("3"), Some("0")])],
         rows: &[(0, "x", 0.5, 1.0, "1"), (0, "x", f64::INFINITY, 1.0, "1")],
         clock: Some(1),
     };
@@ -227,7 +226,7 @@ fn a_jump_moves_with_its_time() {
     let made = Made {
         text: "system \"pulse\"\nstate x, t\nparam k, T unknown\ndrift f\n  x' = k*(1 + sign(T - t))/2\n  t' = 1\noutput x\n",
         parameters: &[("k", 1e-3, 1e3, LOG10), ("T", 0.5, 20.0, LINEAR)],
-        experiments: &[(&[], None, &[Some("0"), Some("0")])],
+        experiments: &[(&[], &[Some("0"), Some("0")])],
         rows: &[(0, "x", 1.0, 1.0, "1"), (0, "x", 3.0, 1.0, "1"), (0, "x", 8.0, 1.0, "1")],
         clock: Some(1),
     };
@@ -307,7 +306,7 @@ fn the_truth_is_found_on_any_number_of_threads() {
             ("a", 1e-2, 1e2, LOG10),
             ("b", 1e-2, 1e2, LOG10),
         ],
-        experiments: &[(&[], None, &[Some("a"), Some("a")]), (&[], None, &[Some("b"), Some("b")])],
+        experiments: &[(&[], &[Some("a"), Some("a")]), (&[], &[Some("b"), Some("b")])],
         rows: &rows,
         clock: None,
     };
@@ -335,7 +334,7 @@ fn profiles_of_a_line_are_parabolas() {
     let made = Made {
         text: "system \"line\"\nstate x\nparam a, b unknown\ndrift f\n  x' = b\noutput x\n",
         parameters: &[("a", -5.0, 5.0, LINEAR), ("b", -5.0, 5.0, LINEAR)],
-        experiments: &[(&[], None, &[Some("a")])],
+        experiments: &[(&[], &[Some("a")])],
         rows: &rows,
         clock: None,
     };
@@ -367,7 +366,7 @@ fn factors_of_a_product_are_not_told() {
     let made = Made {
         text: "system \"product\"\nstate x\nparam a, b, k unknown\ndrift f\n  x' = -k*x\noutput x\n",
         parameters: &[("a", 1e-2, 1e2, LOG10), ("b", 1e-2, 1e2, LOG10), ("k", 1e-2, 1e2, LOG10)],
-        experiments: &[(&[], None, &[Some("a*b")])],
+        experiments: &[(&[], &[Some("a*b")])],
         rows: &rows,
         clock: None,
     };

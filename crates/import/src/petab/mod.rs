@@ -45,8 +45,7 @@ pub fn petab_beside(problem: &Path) -> impl Fn(&str) -> Result<PetabFile, String
             return Err("it lies outside of the folder of the problem".to_owned());
         }
         let path = folder.join(named);
-        let text =
-            palmistry_io::file::read_text(&path, ALLOWANCE.bytes as u64).map_err(|why| why.to_string())?;
+        let text = palmistry_io::file::read_text(&path, ALLOWANCE.bytes).map_err(|why| why.to_string())?;
         Ok(PetabFile { name: palmistry_io::foreign::name_of(&path), text })
     }
 }
