@@ -221,3 +221,27 @@ fn mistakes_are_named_where_they_are() {
         assert!(told.contains(message), "{message}: {told}");
     }
 }
+
+/// A paper may have a scene of several experiments: it is fitted, told in the object, and drawn on the page.
+#[test]
+fn a_paper_may_have_experiments() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/experiments");
+    let folder = folder();
+    for name in ["vessels.proof", "vessels.csv", "vessels.toml"] {
+        write(&folder, name, std::fs::read(source.join(name)).unwrap());
+    }
+    write(&folder, "paper.toml", "title = \"Two vessels\"\nscenes = [\"vessels.toml\"]\n");
+    let out = folder.path().join("out");
+    let output =
+        palmistry(&["verify", folder.path().to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
+    let found = json(&output);
+    let own = &found["experiments"][0];
+    assert_eq!(own["kind"], "experiments", "{own}");
+    // as the measurements were made: k = 1, loss = 0.3, scale = 2
+    for (one, truth) in own["parameters"].as_array().unwrap().iter().zip([1.0, 0.3, 2.0]) {
+        let (value, deviation) = (one["value"].as_f64().unwrap(), one["deviation"].as_f64().unwrap());
+        assert!((value / truth).log10().abs() < 3.0 * deviation, "{one}");
+    }
+    let page = std::fs::read_to_string(out.join("index.html")).unwrap();
+    assert!(page.contains("Experiments fitted together") && page.contains("seen, large"));
+}

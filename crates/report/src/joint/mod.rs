@@ -239,7 +239,7 @@ fn ending(observed: &JointObserved<'_>) -> Vec<String> {
                     short(own.chi_square),
                     own.degrees,
                     own.probability,
-                    if own.fits() { "the model explains the measurements" } else { "the model does not explain them" }
+                    if own.fits() { "these parameters explain the measurements" } else { "these parameters do not explain them" }
                 ),
                 None => "no test of fit: the size of the errors is estimated, or they are not normal, or there are priors".to_owned(),
             });
