@@ -9,8 +9,9 @@ use std::collections::HashMap;
 /// A state that has become negative by less than this has done so by rounding.
 const ROUNDING: f64 = 1e-7;
 
-/// A little more than zero.
-const TINY: f64 = 1e-150;
+/// A little more than zero, and how little it may matter by how much.
+const TINY: [f64; 2] = [1e-150, 1e-75];
+const SAME: f64 = 1e-9;
 
 /// Where an input of a program comes from.
 #[derive(Clone, Copy, Debug)]
@@ -84,19 +85,29 @@ impl Formulas {
         }
     }
 
-    /// What is a root of zero or of a little less than zero by rounding has a value all the same: that at a little more than zero.
+    /// What is a root of zero or of a little less than zero by rounding has a value all the same: that at a little more than zero, where it does not
+    /// matter how little. A pole has none.
     fn fill_beside(
         &self,
         loaded: &palmistry_math::expression::Loaded<'_, Floats>,
         room: &mut Room,
         out: &mut [f64],
     ) {
-        for (input, source) in room.inputs.iter_mut().zip(&self.sources) {
-            if matches!(source, Source::State(_)) && (-ROUNDING..=0.0).contains(input) {
-                *input = TINY;
+        let is_zero = |(input, source): (&f64, &Source)| {
+            matches!(source, Source::State(_)) && (-ROUNDING..=0.0).contains(input)
+        };
+        let zeros: Vec<usize> =
+            (0..room.inputs.len()).filter(|at| is_zero((&room.inputs[*at], &self.sources[*at]))).collect();
+        let mut other = vec![f64::NAN; out.len()];
+        for (tiny, out) in TINY.into_iter().zip([&mut *out, other.as_mut_slice()]) {
+            zeros.iter().for_each(|at| room.inputs[*at] = tiny);
+            Formulas::fill(loaded, room, out);
+        }
+        for (out, other) in out.iter_mut().zip(other) {
+            if (*out - other).abs() > SAME * (1.0 + out.abs()) {
+                *out = f64::NAN;
             }
         }
-        Formulas::fill(loaded, room, out);
     }
 
     fn fill(loaded: &palmistry_math::expression::Loaded<'_, Floats>, room: &mut Room, out: &mut [f64]) {

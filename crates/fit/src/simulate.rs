@@ -26,7 +26,7 @@ impl Exactness {
     fn explicit(self) -> [f64; 2] {
         match self {
             Exactness::Search => [1e-8, 1e-11],
-            Exactness::Answer => [1e-9, 1e-12],
+            Exactness::Answer => [1e-11, 1e-13],
         }
     }
 
@@ -46,8 +46,14 @@ const LEAST: f64 = 1e-3;
 /// So many steps are made in an experiment at most.
 const MOST_STEPS: usize = 20_000;
 
-/// A state is at rest whose rate changes it by less than this part of it in the time that has passed.
+/// A state is at rest that is nearer to its rest than this part of it, and whose rate changes it by less than this part in the time that has passed.
 const AT_REST: f64 = 1e-8;
+
+/// Singular values of the Jacobian matrix below this part of the largest belong to what is conserved.
+const CONSERVED: f64 = 1e-13;
+
+/// The singular values take no more sweeps than these.
+const MOST_ITERATIONS: usize = 10_000;
 
 /// Where nothing has come to rest by then, it is said.
 const LONGEST: f64 = 1e12;
@@ -321,7 +327,36 @@ impl CompiledPhase {
             }
             sums.into_iter().fold(0.0, f64::max)
         };
-        let way = Way { from, times, rests, end, sought: &sought, all, rate: &rate, interrupted };
+        // by Newton's step, the shortest one where something is conserved: how far each state is from rest
+        let distance = |x: &[f64], rates: &[f64]| -> Option<DVector<f64>> {
+            differentiate(x);
+            let mut jacobian = DMatrix::zeros(n, n);
+            for ([row, column], slope) in by_states.iter().zip(&known.borrow().1) {
+                jacobian[(*row, *column)] = *slope;
+            }
+            let mut right = DVector::from_column_slice(rates);
+            if let Some(clock) = self.clock {
+                jacobian.row_mut(clock).fill(0.0);
+                jacobian.column_mut(clock).fill(0.0);
+                right[clock] = 0.0;
+            }
+            if jacobian.iter().chain(right.iter()).any(|value| !value.is_finite()) {
+                return None;
+            }
+            let svd = jacobian.try_svd(true, true, f64::EPSILON, MOST_ITERATIONS)?;
+            svd.solve(&right, CONSERVED * svd.singular_values.max()).ok()
+        };
+        let way = Way {
+            from,
+            times,
+            rests,
+            end,
+            sought: &sought,
+            all,
+            rate: &rate,
+            distance: &distance,
+            interrupted,
+        };
         let problem = build(exactness.explicit()).map_err(failed)?;
         let mut solver = problem.tsit45_sens().map_err(failed)?;
         let explicit = way.go(&mut solver, found.clone(), Some(&norm));
@@ -363,6 +398,9 @@ const STABLE: f64 = 1.0;
 /// Rates at states, parameters and a time.
 type Rate<'r> = dyn Fn(&[f64], &[f64], f64, &mut [f64]) + 'r;
 
+/// How far states with these rates are from rest.
+type Distance<'d> = dyn Fn(&[f64], &[f64]) -> Option<DVector<f64>> + 'd;
+
 /// A norm of the Jacobian matrix at states.
 type Norm<'n> = dyn Fn(&[f64]) -> f64 + 'n;
 
@@ -376,6 +414,7 @@ struct Way<'w> {
     sought: &'w [usize],
     all: usize,
     rate: &'w Rate<'w>,
+    distance: &'w Distance<'w>,
     interrupted: &'w dyn Fn() -> bool,
 }
 
@@ -398,6 +437,10 @@ impl Way<'_> {
             let before = solver.state().t;
             let stopped = solver.step().map_err(|error| lost(before, error))?;
             let time = solver.state().t;
+            // an integrator may take a number that is none for a small error
+            if solver.state().y.batch_as_slice(0).iter().any(|state| !state.is_finite()) {
+                return Err(Stopped::Lost(before, "the rates have no value there".to_owned()));
+            }
             if (self.interrupted)() {
                 return Err(Stopped::Lost(time, "interrupted".to_owned()));
             }
@@ -420,11 +463,15 @@ impl Way<'_> {
                 let states = solver.state().y.batch_as_slice(0).to_vec();
                 rates.resize(states.len(), 0.0);
                 (self.rate)(&states, &[], time, &mut rates);
-                let is_at_rest = |state: usize| {
-                    Some(state) == clock
-                        || (rates[state] * time).abs() <= AT_REST * (states[state].abs() + LEAST)
+                let is_nothing = |state: usize, change: f64| {
+                    Some(state) == clock || change.abs() <= AT_REST * (states[state].abs() + LEAST)
                 };
-                if (0..states.len()).all(is_at_rest) {
+                // after a short time any rate has changed little: what is left to go counts
+                let is_at_rest = (0..states.len()).all(|state| is_nothing(state, rates[state] * time))
+                    && (self.distance)(&states, &rates).is_some_and(|distance| {
+                        (0..states.len()).all(|state| is_nothing(state, distance[state]))
+                    });
+                if is_at_rest {
                     let moment = self.moment(solver, time)?;
                     return Ok((found, Some(moment)));
                 }

@@ -386,3 +386,49 @@ fn factors_of_a_product_are_not_told() {
     let held = Information::of(&found, &[true, false, false]);
     assert!(held.deviations[0].is_none() && held.deviations[1].unwrap() < 1.0 && held.covariance.is_some());
 }
+
+/// What is slow is not at rest, however little it has moved at first; and what is conserved does not keep a system from resting.
+#[test]
+fn what_is_slow_is_not_at_rest() {
+    let made = Made {
+        text: "system \"slow\"\nstate x, y, z\nparam k, q unknown\ndrift f\n  x' = k*(2 - x)\n  y' = -k*y + q*z\n  z' = k*y - q*z\noutput x\n",
+        parameters: &[("k", 1e-9, 1.0, LOG10), ("q", 1e-9, 1.0, LOG10)],
+        experiments: &[(&[], &[Some("1"), Some("3"), Some("0")])],
+        rows: &[(0, "x", f64::INFINITY, 1.0, "1"), (0, "y", f64::INFINITY, 1.0, "1")],
+        clock: None,
+    };
+    let likelihood = made.likelihood();
+    for (k, q) in [(1.0f64, 0.5f64), (1e-4, 2e-4), (1e-6, 1e-2)] {
+        let found = likelihood.at(&[k.log10(), q.log10()], Exactness::Answer, &NEVER).unwrap();
+        near(found.expected[0], 2.0, 1e-7);
+        near(found.expected[1], 3.0 * q / (k + q), 1e-7);
+        let by_k = -3.0 * q / (k + q).powi(2) * k * std::f64::consts::LN_10;
+        near(found.gradient[0], (found.expected[1] - 1.0) * by_k, 1e-5);
+    }
+}
+
+/// A power of zero has a value, and a pole has none: neither as a rate nor as what is expected; nor has a root of what is negative. And none of them keeps the program for ever.
+#[test]
+fn poles_have_no_values() {
+    let made = |rate: &str, output: &'static str| {
+        let text = format!("system \"edges\"\nstate x\nparam k unknown\ndrift f\n  x' = {rate}\noutput x\n");
+        let made = Made {
+            text: &text,
+            parameters: &[("k", 0.1, 10.0, LOG10)],
+            experiments: &[(&[], &[Some("0")])],
+            rows: &[(0, output, 0.0, 1.0, "1"), (0, output, 2.0, 1.0, "1")],
+            clock: None,
+        };
+        made.likelihood().at(&[0.0], Exactness::Answer, &NEVER)
+    };
+    let found = made("1 - x^k", "x^k").unwrap();
+    assert!(found.expected[0].abs() < 1e-12);
+    near(found.expected[1], 1.0 - (-2.0f64).exp(), 1e-8);
+    for (rate, output) in [("1", "1/x"), ("1", "log(x)")] {
+        let why = made(rate, output).unwrap_err();
+        assert!(matches!(why, NotFollowed::NoValue { time: 0.0, .. }), "{why:?}");
+    }
+    for rate in ["1/x", "sqrt(-1 - x^2)", "1 + x^2", "exp(exp(k + x))"] {
+        assert!(matches!(made(rate, "x"), Err(NotFollowed::Lost { .. })), "{rate}");
+    }
+}
