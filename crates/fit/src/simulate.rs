@@ -55,6 +55,9 @@ const CONSERVED: f64 = 1e-13;
 /// The singular values take no more sweeps than these.
 const MOST_ITERATIONS: usize = 10_000;
 
+/// The shortest step, whatever the unit of time is; one that does not move time is none either.
+const SHORTEST: f64 = 1e-30;
+
 /// Where nothing has come to rest by then, it is said.
 const LONGEST: f64 = 1e12;
 
@@ -317,6 +320,10 @@ impl CompiledPhase {
                 .rhs_sens_implicit(rate, by_state, by_parameter)
                 .init_sens(begin, begin_by, n)
                 .build()
+                .map(|mut problem| {
+                    problem.ode_options.min_timestep = SHORTEST;
+                    problem
+                })
         };
         // the largest sum of a row's magnitudes: no eigenvalue is larger
         let norm = |x: &[f64]| {
@@ -443,6 +450,9 @@ impl Way<'_> {
             }
             if (self.interrupted)() {
                 return Err(Stopped::Lost(time, "interrupted".to_owned()));
+            }
+            if time <= before {
+                return Err(Stopped::Lost(time, "no step is small enough".to_owned()));
             }
             if let Some(norm) = norm
                 && step % LOOK == LOOK - 1
