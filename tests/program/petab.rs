@@ -222,6 +222,37 @@ fn mistakes_are_named_where_they_are() {
     }
 }
 
+/// What would grow with the rows of a table is refused, and a name that stands for a file elsewhere is not followed.
+#[cfg(unix)]
+#[test]
+fn a_strangers_problem_is_kept_small_and_at_home() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/petab/0001");
+    let folder = folder();
+    for entry in std::fs::read_dir(&source).unwrap() {
+        let path = entry.unwrap().path();
+        write(&folder, path.file_name().unwrap().to_str().unwrap(), std::fs::read(&path).unwrap());
+    }
+    let problem = folder.path().join("_0001.yaml");
+    let refused = |message: &str| {
+        let output = palmistry(&["import", problem.to_str().unwrap()]);
+        let told = String::from_utf8_lossy(&output.stderr).replace('\n', " ");
+        let told = told.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(output.status.code(), Some(2), "{told:.300}");
+        assert!(told.contains(message), "{message}: {told:.300}");
+    };
+    let conditions = folder.path().join("_conditions.tsv");
+    let name = "x".repeat(1 << 20);
+    std::fs::write(&conditions, format!("conditionId\t{name}\n{}", "c0\t1\n".repeat(1 << 20))).unwrap();
+    refused("a column's name has 1048576 bytes");
+    let name = "x".repeat(400);
+    let rows: String = (0..200_000).map(|row| format!("c{row}\t1\n")).collect();
+    std::fs::write(&conditions, format!("conditionId\t{name}\n{rows}")).unwrap();
+    refused("the problem becomes too large");
+    std::fs::remove_file(&conditions).unwrap();
+    std::os::unix::fs::symlink("/etc/hostname", &conditions).unwrap();
+    refused("it lies outside of the folder of the problem");
+}
+
 /// A paper may have a scene of several experiments: it is fitted, told in the object, and drawn on the page.
 #[test]
 fn a_paper_may_have_experiments() {

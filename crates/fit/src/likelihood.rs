@@ -63,20 +63,22 @@ impl Likelihood {
         let mut system = problem.system.clone();
         let names = Names::of(&problem);
         let mut experiments = Vec::new();
+        let mut all_times = vec![Vec::new(); problem.experiments.len()];
+        problem.measurements.iter().for_each(|one| all_times[one.experiment].push(one.time));
         for (at, one) in problem.experiments.iter().enumerate() {
             let before = one
                 .before
                 .as_ref()
                 .map(|phase| CompiledPhase::new(&mut system, phase, &names, problem.clock));
-            let own = || problem.measurements.iter().filter(|measurement| measurement.experiment == at);
-            let mut times: Vec<f64> = own().map(|one| one.time).filter(|time| time.is_finite()).collect();
+            let mut times = std::mem::take(&mut all_times[at]);
             times.sort_by(f64::total_cmp);
             times.dedup();
+            let rests = times.pop_if(|last| last.is_infinite()).is_some();
             experiments.push(CompiledExperiment {
                 before: before.transpose()?,
                 phase: CompiledPhase::new(&mut system, &one.phase, &names, problem.clock)?,
                 times,
-                rests: own().any(|one| one.time.is_infinite()),
+                rests,
             });
         }
         let mut places: HashMap<[NodeId; 2], usize> = HashMap::new();

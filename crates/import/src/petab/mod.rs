@@ -5,6 +5,7 @@
 //!
 //! Reference: L. Schmiester et al., PEtab: interoperable specification of parameter estimation problems in systems biology, PLoS Comput. Biol. 17, 2021.
 
+mod read;
 mod scene;
 mod tables;
 mod yaml;
@@ -12,14 +13,12 @@ mod yaml;
 use super::expression::{ForeignExpr, ForeignKind};
 use super::model::{ForeignConstant, ForeignModel, ForeignOutput};
 use super::names::ForeignNames;
-use super::script::{Dialect, Parser, Syntax, SyntaxKind, meaning, tokens};
 use super::{ALLOWANCE, STACK, print, sbml, write};
 use palmistry_io::foreign::Budget;
 use palmistry_lang::{Problem, ReadError, System, with_plain_line_ends};
 use palmistry_math::number::parse_decimal;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path};
-use tables::{Row, Table};
 use yaml::Yaml;
 
 /// A file of a problem.
@@ -45,6 +44,15 @@ pub fn petab_beside(problem: &Path) -> impl Fn(&str) -> Result<PetabFile, String
             return Err("it lies outside of the folder of the problem".to_owned());
         }
         let path = folder.join(named);
+        // a name beside the problem may stand for a file elsewhere
+        let real = |path: &Path| path.canonicalize().map_err(|why| why.to_string());
+        if !real(&path)?.starts_with(real(if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            &folder
+        })?) {
+            return Err("it lies outside of the folder of the problem".to_owned());
+        }
         let text = palmistry_io::file::read_text(&path, ALLOWANCE.bytes).map_err(|why| why.to_string())?;
         Ok(PetabFile { name: palmistry_io::foreign::name_of(&path), text })
     }
@@ -108,7 +116,7 @@ fn read(name: &str, text: &str, stem: &str, load: &PetabLoader<'_>) -> Result<Im
         )
     };
     let version = yaml.get("format_version").and_then(Yaml::text).unwrap_or("1").trim();
-    if !version.starts_with('1') {
+    if version.split('.').next() != Some("1") {
         return Err(refused(
             "PEtab of this version is not read".to_owned(),
             "version 1 is: petab-python converts between them",
@@ -199,21 +207,6 @@ struct Reading<'f> {
     measurements: Vec<Measurement>,
 }
 
-/// A formula of a table.
-fn formula(text: &str, budget: &Budget) -> Result<ForeignExpr, Problem> {
-    let (words, _) = tokens(text, Dialect::Printed, budget)?;
-    let mut parser = Parser::new(&words, Dialect::Printed);
-    let one = parser.expression()?;
-    if !parser.at_end() {
-        return Err(parser.unexpected("the end of the formula"));
-    }
-    let mut names = |part: &Syntax| match &part.kind {
-        SyntaxKind::Name(name) => Some(Ok(ForeignExpr::name(name, &part.span))),
-        _ => None,
-    };
-    meaning(&one, &mut names)
-}
-
 /// Whether a text is a number.
 fn is_number(text: &str) -> bool {
     text.parse::<f64>().is_ok_and(f64::is_finite)
@@ -240,209 +233,6 @@ impl<'f> Reading<'f> {
         reading.read_observables()?;
         reading.read_measurements()?;
         Ok(reading)
-    }
-
-    fn read_parameters(&mut self) -> Result<(), ReadError> {
-        for file in &self.files.parameters {
-            let table = Table::read(file, &["parameterId", "parameterScale", "estimate"])?;
-            for row in &table.rows {
-                let name = table.needed(row, "parameterId")?.to_owned();
-                let scale = match row.cell("parameterScale").unwrap_or("lin") {
-                    "lin" => "linear",
-                    "log" => "log",
-                    "log10" => "log10",
-                    other => {
-                        let message = format!("'{other}' is no scale");
-                        return Err(table.error(row, message, "parameterScale is lin, log or log10"));
-                    }
-                };
-                let is_sought = match table.needed(row, "estimate")? {
-                    "1" | "1.0" | "true" | "True" => true,
-                    "0" | "0.0" | "false" | "False" => false,
-                    other => {
-                        return Err(table.error(
-                            row,
-                            format!("'{other}' is neither 0 nor 1"),
-                            "estimate is 0 or 1",
-                        ));
-                    }
-                };
-                let bounds = match is_sought {
-                    true => Some([table.number(row, "lowerBound")?, table.number(row, "upperBound")?]),
-                    false => None,
-                };
-                let nominal = row.cell("nominalValue").map(str::to_owned);
-                if let Some(text) = nominal.as_deref().filter(|text| !is_number(text)) {
-                    return Err(table.error(
-                        row,
-                        format!("'{text}' is no number"),
-                        "nominalValue is a decimal",
-                    ));
-                }
-                if !is_sought && nominal.is_none() {
-                    return Err(table.error(
-                        row,
-                        format!("'{name}' is not estimated, and has no value"),
-                        "give it a nominalValue, or estimate it",
-                    ));
-                }
-                if self.parameters.iter().any(|(other, _)| *other == name) {
-                    return Err(table.error(
-                        row,
-                        format!("'{name}' stands in the table twice"),
-                        "take one row out",
-                    ));
-                }
-                let prior = prior(&table, row, "objectivePrior")?;
-                let starts = starts(&table, row)?;
-                self.parameters.push((name, Parameter { scale, bounds, nominal, is_sought, prior, starts }));
-            }
-        }
-        Ok(())
-    }
-
-    fn read_conditions(&mut self) -> Result<(), ReadError> {
-        for file in &self.files.conditions {
-            let table = Table::read(file, &["conditionId"])?;
-            for row in &table.rows {
-                let id = table.needed(row, "conditionId")?.to_owned();
-                let mut set = Vec::new();
-                for column in table
-                    .columns
-                    .iter()
-                    .filter(|column| !matches!(column.as_str(), "conditionId" | "conditionName" | ""))
-                {
-                    // an empty cell of a state leaves it as it is
-                    let Some(cell) = row.cell(column).filter(|cell| !cell.eq_ignore_ascii_case("nan")) else {
-                        continue;
-                    };
-                    set.push((column.clone(), cell.to_owned()));
-                }
-                if self.conditions.insert(id.clone(), set).is_some() {
-                    return Err(table.error(
-                        row,
-                        format!("the condition '{id}' stands in the table twice"),
-                        "take one row out",
-                    ));
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn read_observables(&mut self) -> Result<(), ReadError> {
-        for file in &self.files.observables {
-            let table = Table::read(file, &["observableId", "observableFormula", "noiseFormula"])?;
-            for row in &table.rows {
-                let id = table.needed(row, "observableId")?.to_owned();
-                let read = |column: &str| {
-                    let text = table.needed(row, column)?;
-                    formula(text, &self.budget).map_err(|problem| {
-                        let help = problem
-                            .help
-                            .clone()
-                            .unwrap_or_else(|| "a formula of names, numbers and functions".to_owned());
-                        table.error(
-                            row,
-                            format!("the {column} '{text}' cannot be read: {}", problem.message),
-                            help,
-                        )
-                    })
-                };
-                let compared = match row.cell("observableTransformation").unwrap_or("lin") {
-                    "lin" => "linear",
-                    "log" => "log",
-                    "log10" => "log10",
-                    other => {
-                        return Err(table.error(
-                            row,
-                            format!("'{other}' is no transformation"),
-                            "it is lin, log or log10",
-                        ));
-                    }
-                };
-                let law = match row.cell("noiseDistribution").unwrap_or("normal") {
-                    "normal" => "normal",
-                    "laplace" => "laplace",
-                    other => {
-                        return Err(table.error(
-                            row,
-                            format!("'{other}' is no distribution that is read"),
-                            "it is normal or laplace",
-                        ));
-                    }
-                };
-                let observable = Observable {
-                    formula: read("observableFormula")?,
-                    noise: read("noiseFormula")?,
-                    compared,
-                    law,
-                };
-                if self.observables.iter().any(|(other, _)| *other == id) {
-                    return Err(table.error(
-                        row,
-                        format!("the observable '{id}' stands in the table twice"),
-                        "take one row out",
-                    ));
-                }
-                self.observables.push((id, observable));
-            }
-        }
-        Ok(())
-    }
-
-    fn read_measurements(&mut self) -> Result<(), ReadError> {
-        for file in &self.files.measurements {
-            let table = Table::read(file, &["observableId", "simulationConditionId", "measurement", "time"])?;
-            for row in &table.rows {
-                let observable = table.needed(row, "observableId")?.to_owned();
-                if !self.observables.iter().any(|(id, _)| *id == observable) {
-                    return Err(table.error(
-                        row,
-                        format!("'{observable}' is no observable"),
-                        "the table of observables says which there are",
-                    ));
-                }
-                let condition = table.needed(row, "simulationConditionId")?.to_owned();
-                let before = row.cell("preequilibrationConditionId").map(str::to_owned);
-                for id in [Some(&condition), before.as_ref()].into_iter().flatten() {
-                    if !self.conditions.contains_key(id) {
-                        return Err(table.error(
-                            row,
-                            format!("'{id}' is no condition"),
-                            "the table of conditions says which there are",
-                        ));
-                    }
-                }
-                let time = table.needed(row, "time")?;
-                let time = match time.to_ascii_lowercase().as_str() {
-                    "inf" | "infinity" | "+inf" => "inf".to_owned(),
-                    _ => {
-                        if table.number(row, "time")? < 0.0 {
-                            return Err(table.error(
-                                row,
-                                format!("the time {time} is before the start"),
-                                "times are counted from the start of the experiment",
-                            ));
-                        }
-                        time.to_owned()
-                    }
-                };
-                table.number(row, "measurement")?;
-                let value = table.needed(row, "measurement")?.to_owned();
-                let mut set = Vec::new();
-                for (column, stem) in
-                    [("observableParameters", "observableParameter"), ("noiseParameters", "noiseParameter")]
-                {
-                    let Some(cell) = row.cell(column) else { continue };
-                    for (at, value) in cell.split(';').map(str::trim).enumerate() {
-                        set.push((format!("{stem}{}_{observable}", at + 1), value.to_owned()));
-                    }
-                }
-                self.measurements.push(Measurement { before, condition, observable, time, value, set });
-            }
-        }
-        Ok(())
     }
 
     /// The names that only tables have.
@@ -603,61 +393,5 @@ impl<'f> Reading<'f> {
                 .help("make it an assignment rule of the model"));
         }
         print::text(expression, names, &self.budget)
-    }
-}
-
-/// A prior of a row: its law, whether it is on the scale of the parameter, and its numbers.
-#[allow(clippy::type_complexity)] // named by its one caller
-fn prior(
-    table: &Table<'_>,
-    row: &Row,
-    stem: &str,
-) -> Result<Option<(&'static str, bool, [f64; 2])>, ReadError> {
-    let Some(kind) = row.cell(&format!("{stem}Type")) else { return Ok(None) };
-    let (law, is_on_scale) = match kind {
-        // between the bounds nothing is preferred
-        "uniform" | "parameterScaleUniform" => return Ok(None),
-        "normal" => ("normal", false),
-        "laplace" => ("laplace", false),
-        "logNormal" => ("log-normal", false),
-        "logLaplace" => ("log-laplace", false),
-        "parameterScaleNormal" => ("normal", true),
-        "parameterScaleLaplace" => ("laplace", true),
-        other => return Err(table.error(row, format!("'{other}' is no prior that is read"), "uniform, normal, laplace, logNormal, logLaplace, parameterScaleUniform, parameterScaleNormal and parameterScaleLaplace are")),
-    };
-    let numbers = pair(table, row, &format!("{stem}Parameters"))?;
-    if numbers[1] <= 0.0 {
-        return Err(table.error(
-            row,
-            format!("the spread {} of the prior is not positive", numbers[1]),
-            "it is the second number",
-        ));
-    }
-    Ok(Some((law, is_on_scale, numbers)))
-}
-
-/// Where searches begin, as values.
-fn starts(table: &Table<'_>, row: &Row) -> Result<Option<[f64; 2]>, ReadError> {
-    let value = |on_scale: f64| match row.cell("parameterScale") {
-        Some("log10") => 10f64.powf(on_scale),
-        Some("log") => on_scale.exp(),
-        _ => on_scale,
-    };
-    match row.cell("initializationPriorType") {
-        Some("uniform") => pair(table, row, "initializationPriorParameters").map(Some),
-        Some("parameterScaleUniform") if row.cell("initializationPriorParameters").is_some() => {
-            pair(table, row, "initializationPriorParameters").map(|ends| Some(ends.map(value)))
-        }
-        _ => Ok(None),
-    }
-}
-
-fn pair(table: &Table<'_>, row: &Row, column: &str) -> Result<[f64; 2], ReadError> {
-    let text = table.needed(row, column)?;
-    let numbers: Option<Vec<f64>> =
-        text.split(';').map(|part| part.trim().parse::<f64>().ok().filter(|x| x.is_finite())).collect();
-    match numbers.as_deref() {
-        Some([a, b]) => Ok([*a, *b]),
-        _ => Err(table.error(row, format!("'{text}' is no pair of numbers"), "two decimals with ; between")),
     }
 }

@@ -4,9 +4,12 @@ use super::PetabFile;
 use palmistry_lang::{Problem, ReadError};
 use std::collections::BTreeMap;
 
-/// A row, its cells by the names of their columns, and where it stands in the file, in bytes.
+/// Nobody calls a thing by a longer name.
+const LONGEST_NAME: usize = 500;
+
+/// A row with its cells, and where it stands in the file, in bytes.
 pub(super) struct Row {
-    cells: BTreeMap<String, String>,
+    cells: Vec<String>,
     place: std::ops::Range<usize>,
 }
 
@@ -14,12 +17,13 @@ pub(super) struct Row {
 pub(super) struct Table<'f> {
     pub file: &'f PetabFile,
     pub columns: Vec<String>,
+    places: BTreeMap<String, usize>,
     pub rows: Vec<Row>,
 }
 
 impl Row {
-    /// The cell of a column, without blanks around it; none where it is empty.
-    pub fn cell(&self, column: &str) -> Option<&str> {
+    /// The cell at a place, without blanks around it; none where it is empty.
+    pub fn at(&self, column: usize) -> Option<&str> {
         self.cells.get(column).map(String::as_str).filter(|cell| !cell.is_empty())
     }
 }
@@ -54,6 +58,12 @@ impl<'f> Table<'f> {
                 "the first line names the columns, apart by tabs; PEtab 1.0 says which there have to be",
             ));
         }
+        if let Some(long) = columns.iter().find(|name| name.len() > LONGEST_NAME) {
+            let message = format!("a column's name has {} bytes", long.len());
+            return Err(problem(message, 0..0, "names of at most 500 bytes are read"));
+        }
+        let places: BTreeMap<String, usize> =
+            columns.iter().enumerate().rev().map(|(at, name)| (name.clone(), at)).collect();
         let mut rows = Vec::new();
         for record in reader.records() {
             let record = record.map_err(|why| {
@@ -75,10 +85,14 @@ impl<'f> Table<'f> {
                     "take the rest out, or name its columns",
                 ));
             }
-            let cells = columns.iter().cloned().zip(record.iter().map(str::to_owned)).collect();
-            rows.push(Row { cells, place: start..end });
+            rows.push(Row { cells: record.iter().map(str::to_owned).collect(), place: start..end });
         }
-        Ok(Table { file, columns, rows })
+        Ok(Table { file, columns, places, rows })
+    }
+
+    /// The cell of a column in a row; none where it is empty, or there is no such column.
+    pub fn cell<'r>(&self, row: &'r Row, column: &str) -> Option<&'r str> {
+        self.places.get(column).and_then(|at| row.at(*at))
     }
 
     /// A mistake in a row.
@@ -91,7 +105,8 @@ impl<'f> Table<'f> {
     /// # Errors
     /// It is empty.
     pub fn needed<'r>(&self, row: &'r Row, column: &str) -> Result<&'r str, ReadError> {
-        row.cell(column).ok_or_else(|| self.error(row, format!("the row has no '{column}'"), "fill it in"))
+        self.cell(row, column)
+            .ok_or_else(|| self.error(row, format!("the row has no '{column}'"), "fill it in"))
     }
 
     /// A number in a cell that a row has to have.

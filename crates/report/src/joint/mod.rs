@@ -30,13 +30,16 @@ impl<'a> JointObserved<'a> {
     }
 }
 
+/// Columns of a line of text.
+const WIDTH: usize = 80;
+
 /// Half of an interval of 95 %, in deviations.
 const HALF: f64 = 1.959_964;
 
 /// A parameter is poorly determined where half of its interval of 95 % is more than this part of a decade, or of its value on a linear scale.
 const POOR: f64 = 0.5;
 
-/// What is known of a parameter, by the information at the best parameters.
+/// What is known of a parameter, by its profile where that came to its ends, else by the information at the best parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Standing {
     Determined,
@@ -44,6 +47,8 @@ enum Standing {
     /// The interval of 95 % goes beyond the bounds, or nothing tells it.
     Undetermined,
     AtBound,
+    /// The search came to no end: there is something better, and what is known there says nothing.
+    NotEnded,
 }
 
 impl Standing {
@@ -53,6 +58,7 @@ impl Standing {
             Standing::Poorly => "poorly determined",
             Standing::Undetermined => "not determined",
             Standing::AtBound => "at a bound",
+            Standing::NotEnded => "search not ended",
         }
     }
 
@@ -92,23 +98,36 @@ impl Entry<'_> {
     fn interval(&self) -> Option<[Option<f64>; 2]> {
         self.profile.map(|own| own.interval.map(|end| end.map(|end| self.parameter.scale.value(end))))
     }
+
+    /// The same in words: an end that is not met before the bound is open, and of a profile that was cut off nobody knows.
+    fn interval_words(&self) -> Option<[String; 2]> {
+        let (ends, cut_off) = (self.interval()?, self.profile?.cut_off);
+        let word = |side: usize| match ends[side] {
+            Some(end) => short(end),
+            None if cut_off[side] => "cut off".to_owned(),
+            None => "open".to_owned(),
+        };
+        Some([word(0), word(1)])
+    }
 }
 
 fn entries<'a>(observed: &JointObserved<'a>) -> Vec<Entry<'a>> {
     let Some(Ok(fit)) = &observed.answer.fit else { return Vec::new() };
+    let has_ended = fit.best().end == StartEnd::Converged;
     let entry = |(place, parameter): (usize, &'a SoughtParameter)| {
         let deviation =
             observed.answer.information.as_ref().and_then(|own| own.deviations.get(place).copied().flatten());
         let is_at_bound = observed.answer.at_bounds.get(place) == Some(&true);
         let scaled = fit.best().found[place];
-        let standing = Standing::of(parameter, scaled, deviation, is_at_bound);
-        Entry {
-            parameter,
-            scaled,
-            deviation,
-            standing,
-            profile: observed.answer.profiles.iter().find(|own| own.parameter == place),
-        }
+        let profile = observed.answer.profiles.iter().find(|own| own.parameter == place);
+        let is_open =
+            profile.is_some_and(|own| (0..2).any(|side| own.interval[side].is_none() && !own.cut_off[side]));
+        let standing = match has_ended {
+            false => Standing::NotEnded,
+            true if is_open && !is_at_bound => Standing::Undetermined,
+            true => Standing::of(parameter, scaled, deviation, is_at_bound),
+        };
+        Entry { parameter, scaled, deviation: deviation.filter(|_| has_ended), standing, profile }
     };
     observed.experiments.problem().parameters.iter().enumerate().map(entry).collect()
 }
@@ -158,7 +177,10 @@ fn direction_words(observed: &JointObserved<'_>, parts: &[(usize, f64)]) -> Stri
 
 /// Directions that are told by no more than half of a decade, or a unit of a linear scale, the worst first.
 fn weak<'a>(observed: &JointObserved<'a>) -> Vec<&'a palmistry_fit::WeakDirection> {
-    let Some(information) = &observed.answer.information else { return Vec::new() };
+    let has_ended = matches!(&observed.answer.fit, Some(Ok(fit)) if fit.best().end == StartEnd::Converged);
+    let Some(information) = observed.answer.information.as_ref().filter(|_| has_ended) else {
+        return Vec::new();
+    };
     information.directions.iter().filter(|one| one.deviation > 0.5).take(5).collect()
 }
 
@@ -233,6 +255,13 @@ fn ending(observed: &JointObserved<'_>) -> Vec<String> {
                     "few searches came there: ask for more starts under [search] to be sure of it".to_owned(),
                 );
             }
+            let better = observed.answer.profiles.iter().map(|own| own.better).fold(0.0, f64::max);
+            if better > 0.1 {
+                lines.push(format!(
+                    "a profile met parameters whose log-likelihood is larger by {}: the best is not the best there is; ask for more starts under [search]",
+                    short(better)
+                ));
+            }
             lines.push(match &observed.answer.goodness {
                 Some(own) => format!(
                     "chi-square test: {} with {} degrees of freedom; chance leaves more with probability {:.2e}: {}",
@@ -241,7 +270,8 @@ fn ending(observed: &JointObserved<'_>) -> Vec<String> {
                     own.probability,
                     if own.fits() { "these parameters explain the measurements" } else { "these parameters do not explain them" }
                 ),
-                None => "no test of fit: the size of the errors is estimated, or they are not normal, or there are priors".to_owned(),
+                None if fit.best().end != StartEnd::Converged => "no test of fit: the search came to no end".to_owned(),
+                None => "no test of fit: the size of the errors is estimated, or they are not normal, there are priors, or too few measurements".to_owned(),
             });
         }
     }
@@ -252,13 +282,13 @@ fn ending(observed: &JointObserved<'_>) -> Vec<String> {
 pub fn joint_text(observed: &JointObserved<'_>) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "{}\n{}", observed.experiments.scene.title, heading(observed));
+    let options = textwrap::Options::new(WIDTH).subsequent_indent("  ");
     for line in ending(observed) {
-        let _ = writeln!(out, "{line}");
+        let _ = writeln!(out, "{}", textwrap::fill(&line, &options));
     }
     let all = entries(observed);
     if !all.is_empty() {
         let width = all.iter().map(|entry| entry.parameter.name.chars().count()).max().unwrap_or(0).max(9);
-        let has_profiles = all.iter().any(|entry| entry.profile.is_some());
         let _ = writeln!(out, "\n  {:width$}  {:>12}  {:>14}", "parameter", "value", "deviation");
         for entry in &all {
             let _ = write!(
@@ -269,9 +299,8 @@ pub fn joint_text(observed: &JointObserved<'_>) -> String {
                 with_deviation(entry),
                 entry.standing.word()
             );
-            if has_profiles && let Some([low, high]) = entry.interval() {
-                let end = |end: Option<f64>| end.map_or("open".to_owned(), short);
-                let _ = write!(out, "; 95 %: {} to {}", end(low), end(high));
+            if let Some([low, high]) = entry.interval_words() {
+                let _ = write!(out, "; 95 %: {low} to {high}");
             }
             out.push('\n');
         }
@@ -353,7 +382,7 @@ pub fn joint_json(observed: &JointObserved<'_>) -> Value {
         Some(Err(why)) => (Value::Null, Vec::new(), json!(why)),
         Some(Ok(fit)) => {
             let mut best = simulated_json(observed, &fit.simulated);
-            let free = answer.at_bounds.iter().filter(|is_at| !**is_at).count() as f64;
+            let free = answer.at_bounds.iter().filter(|is_at| !**is_at).count();
             let [random, near] = fit.arrived();
             best["arrived"] = json!({ "from_random_starts": random, "from_near_it": near });
             best["random_starts"] = json!(fit.random);

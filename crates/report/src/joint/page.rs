@@ -5,6 +5,7 @@ use super::{JointObserved, direction_words, ending, entries, heading, short, wea
 use crate::document::document;
 use maud::{Markup, PreEscaped, html};
 use palmistry_fit::SimulatedExperiments;
+use std::collections::BTreeSet;
 
 fn parameters(observed: &JointObserved<'_>) -> Markup {
     let all = entries(observed);
@@ -25,9 +26,7 @@ fn parameters(observed: &JointObserved<'_>) -> Markup {
                     td.n { (short(entry.parameter.bounds[0])) " to " (short(entry.parameter.bounds[1])) }
                     td.n { (entry.parameter.nominal.map_or(String::new(), short)) }
                     td { (entry.standing.word()) }
-                    @if has_profiles { td.n { @if let Some([low, high]) = entry.interval() {
-                        (low.map_or("open".to_owned(), short)) " to " (high.map_or("open".to_owned(), short))
-                    } } }
+                    @if has_profiles { td.n { @if let Some([low, high]) = entry.interval_words() { (low) " to " (high) } } }
                 } } }
             } }
         }
@@ -44,12 +43,8 @@ fn parameters(observed: &JointObserved<'_>) -> Markup {
 
 fn pictures(observed: &JointObserved<'_>, simulated: &SimulatedExperiments) -> Markup {
     let problem = observed.experiments.problem();
-    let mut pairs: Vec<(usize, &str)> = Vec::new();
-    for one in &problem.measurements {
-        if one.time.is_finite() && !pairs.contains(&(one.experiment, one.output.as_str())) {
-            pairs.push((one.experiment, &one.output));
-        }
-    }
+    let timed = problem.measurements.iter().filter(|one| one.time.is_finite());
+    let pairs: BTreeSet<(usize, &str)> = timed.map(|one| (one.experiment, one.output.as_str())).collect();
     html! {
         p { "Points: what was measured, with two deviations of its error. Lines: what is expected at those times." }
         div.two { @for (experiment, output) in pairs.iter().take(MOST_PICTURES) {

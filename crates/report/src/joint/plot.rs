@@ -2,8 +2,9 @@
 
 use super::JointObserved;
 use crate::axis::number;
-use crate::drawing::{INK, MESH, svg};
+use crate::drawing::{Drawing, INK, MESH, svg};
 use palmistry_fit::{ParameterProfile, ParameterScale, SimulatedExperiments};
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 const MEASURED: RGBColor = RGBColor(0, 114, 178);
@@ -32,6 +33,48 @@ fn around(values: impl Iterator<Item = f64>) -> (f64, f64) {
         span if span > 0.0 => (low - 0.06 * span, high + 0.06 * span),
         _ if low.is_finite() => (low - 0.5 * low.abs().max(1.0), high + 0.5 * high.abs().max(1.0)),
         _ => (0.0, 1.0),
+    }
+}
+
+/// A chart of this module as others draw into it.
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// What stands around a picture.
+struct Frame<'f> {
+    caption: &'f str,
+    /// What is along the axes.
+    names: [&'f str; 2],
+    x: (f64, f64),
+    y: (f64, f64),
+    /// Whether x is a count.
+    is_counted: bool,
+}
+
+impl Frame<'_> {
+    /// The chart with its axes, ready to be drawn into.
+    fn chart<'a, 'b>(&self, area: &'a Drawing<'b>) -> Result<Chart<'a, 'b>, Box<dyn std::error::Error>> {
+        let (across, up) = (self.x.1 - self.x.0, self.y.1 - self.y.0);
+        let mut chart = ChartBuilder::on(area)
+            .caption(self.caption, ("sans-serif", 13).into_font().color(&INK))
+            .margin(8)
+            .margin_right(16)
+            .x_label_area_size(34)
+            .y_label_area_size(crate::axis::room(self.y, |v| number(v, up)))
+            .build_cartesian_2d(self.x.0..self.x.1, self.y.0..self.y.1)?;
+        chart
+            .configure_mesh()
+            .light_line_style(WHITE)
+            .bold_line_style(MESH)
+            .x_labels(if self.is_counted { (across as usize).clamp(1, 10) } else { 6 })
+            .y_labels(6)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
+            .x_label_formatter(&|v| if self.is_counted { format!("{v:.0}") } else { number(*v, across) })
+            .y_label_formatter(&|v| number(*v, up))
+            .x_desc(self.names[0])
+            .y_desc(self.names[1])
+            .axis_desc_style(("sans-serif", 12))
+            .draw()?;
+        Ok(chart)
     }
 }
 
@@ -75,28 +118,10 @@ pub(super) fn compared(
     let (low, high) =
         around(rows.iter().flat_map(|row| [place(row.1), place(row.2)].into_iter().chain(bar(row.1, row.3))));
     let title = format!("{output}, {}", problem.experiments[experiment].name);
-    let (across, up) = (right - left, high - low);
     svg((420, 260), &title, |area| {
-        let mut chart = ChartBuilder::on(area)
-            .caption(&title, ("sans-serif", 13).into_font().color(&INK))
-            .margin(8)
-            .margin_right(16)
-            .x_label_area_size(34)
-            .y_label_area_size(crate::axis::room((low, high), |v| number(v, up)))
-            .build_cartesian_2d(left..right, low..high)?;
-        chart
-            .configure_mesh()
-            .light_line_style(WHITE)
-            .bold_line_style(MESH)
-            .x_labels(6)
-            .y_labels(6)
-            .label_style(("sans-serif", 12).into_font().color(&INK))
-            .x_label_formatter(&|v| number(*v, across))
-            .y_label_formatter(&|v| number(*v, up))
-            .x_desc("time")
-            .y_desc(if is_log { "decimal logarithm" } else { "" })
-            .axis_desc_style(("sans-serif", 12))
-            .draw()?;
+        let names = ["time", if is_log { "decimal logarithm" } else { "" }];
+        let frame = Frame { caption: &title, names, x: (left, right), y: (low, high), is_counted: false };
+        let mut chart = frame.chart(area)?;
         chart.draw_series(rows.iter().map(|row| {
             let [from, to] = bar(row.1, row.3);
             PathElement::new([(row.0, from), (row.0, to)], MEASURED.mix(0.4).stroke_width(1))
@@ -118,28 +143,10 @@ pub(super) fn ends(objectives: &[f64]) -> String {
     let over: Vec<f64> = sorted.iter().map(|value| (value - best + 1.0).log10()).collect();
     let (low, high) = around(over.iter().copied());
     let title = "ends of the searches";
-    let span = high - low;
     svg((420, 260), title, |area| {
-        let mut chart = ChartBuilder::on(area)
-            .caption(title, ("sans-serif", 13).into_font().color(&INK))
-            .margin(8)
-            .margin_right(16)
-            .x_label_area_size(34)
-            .y_label_area_size(60)
-            .build_cartesian_2d(0.5..over.len() as f64 + 0.5, low..high)?;
-        chart
-            .configure_mesh()
-            .light_line_style(WHITE)
-            .bold_line_style(MESH)
-            .x_labels(over.len().min(10))
-            .y_labels(6)
-            .label_style(("sans-serif", 12).into_font().color(&INK))
-            .x_label_formatter(&|v| format!("{v:.0}"))
-            .y_label_formatter(&|v| number(*v, span))
-            .x_desc("search, the best first")
-            .y_desc("log10(1 + loss of log-likelihood)")
-            .axis_desc_style(("sans-serif", 12))
-            .draw()?;
+        let names = ["search, the best first", "log10(1 + loss of log-likelihood)"];
+        let x = (0.5, over.len() as f64 + 0.5);
+        let mut chart = Frame { caption: title, names, x, y: (low, high), is_counted: true }.chart(area)?;
         chart.draw_series(over.iter().enumerate().map(|(at, value)| {
             let colour = if *value < 1.1f64.log10() { MEASURED } else { OTHER };
             Circle::new((at as f64 + 1.0, *value), 4, colour.filled())
@@ -161,25 +168,9 @@ pub(super) fn residuals(observed: &JointObserved<'_>, simulated: &SimulatedExper
     let title = "residuals, in sizes of their errors";
     let count = simulated.residuals.len() as f64;
     svg((420, 260), title, |area| {
-        let mut chart = ChartBuilder::on(area)
-            .caption(title, ("sans-serif", 13).into_font().color(&INK))
-            .margin(8)
-            .margin_right(16)
-            .x_label_area_size(34)
-            .y_label_area_size(54)
-            .build_cartesian_2d(0.0..count + 1.0, -most..most)?;
-        chart
-            .configure_mesh()
-            .light_line_style(WHITE)
-            .bold_line_style(MESH)
-            .x_labels(8)
-            .y_labels(6)
-            .label_style(("sans-serif", 12).into_font().color(&INK))
-            .x_label_formatter(&|v| format!("{v:.0}"))
-            .y_label_formatter(&|v| number(*v, 2.0 * most))
-            .x_desc("measurement")
-            .axis_desc_style(("sans-serif", 12))
-            .draw()?;
+        let (x, y) = ((0.0, count + 1.0), (-most, most));
+        let frame = Frame { caption: title, names: ["measurement", ""], x, y, is_counted: true };
+        let mut chart = frame.chart(area)?;
         for level in [-1.96, 1.96] {
             let line = [(0.0, level), (count + 1.0, level)];
             chart.draw_series(LineSeries::new(line, OTHER.stroke_width(1)))?;
@@ -196,37 +187,19 @@ pub(super) fn residuals(observed: &JointObserved<'_>, simulated: &SimulatedExper
 
 /// A profile, with the line below which 95 % lie.
 pub(super) fn profile(name: &str, scale: ParameterScale, own: &ParameterProfile) -> String {
-    let allowed = 1.920_729_410_347_062;
+    let allowed = palmistry_fit::ALLOWED;
     let (left, right) = around(own.points.iter().map(|point| point[0]));
     let top = own.points.iter().map(|point| point[1]).fold(allowed, f64::max).min(3.0 * allowed);
     let bottom = own.points.iter().map(|point| point[1]).fold(0.0, f64::min);
     let (low, high) = (bottom - 0.05 * (top - bottom), top + 0.1 * (top - bottom));
-    let span = right - left;
     svg((420, 240), name, |area| {
-        let mut chart = ChartBuilder::on(area)
-            .caption(name, ("sans-serif", 13).into_font().color(&INK))
-            .margin(8)
-            .margin_right(16)
-            .x_label_area_size(34)
-            .y_label_area_size(54)
-            .build_cartesian_2d(left..right, low..high)?;
         let along = match scale {
             ParameterScale::Linear => name.to_owned(),
             scale => format!("{} of {name}", scale.word()),
         };
-        chart
-            .configure_mesh()
-            .light_line_style(WHITE)
-            .bold_line_style(MESH)
-            .x_labels(6)
-            .y_labels(5)
-            .label_style(("sans-serif", 12).into_font().color(&INK))
-            .x_label_formatter(&|v| number(*v, span))
-            .y_label_formatter(&|v| number(*v, high - low))
-            .x_desc(along)
-            .y_desc("loss of log-likelihood")
-            .axis_desc_style(("sans-serif", 12))
-            .draw()?;
+        let names = [along.as_str(), "loss of log-likelihood"];
+        let frame = Frame { caption: name, names, x: (left, right), y: (low, high), is_counted: false };
+        let mut chart = frame.chart(area)?;
         chart.draw_series(LineSeries::new([(left, allowed), (right, allowed)], OTHER.stroke_width(1)))?;
         let points = own.points.iter().map(|point| (point[0], point[1].min(high)));
         chart.draw_series(LineSeries::new(points.clone(), MEASURED.stroke_width(2)))?;

@@ -202,11 +202,18 @@ impl<'s> Building<'s> {
         let depends = self.system.graph.symbols_of(start.iter().copied());
         if let Some(state) = self.states.iter().find(|state| depends.contains(state)) {
             let name = self.system.symbol_name(*state).to_owned();
-            return Err(self.scene.error_at(
-                &format!("initial.{name}"),
-                format!("the start of '{name}' depends on itself"),
-                "give it a value, or a formula of parameters",
-            ));
+            return Err(match goes_on && !first.contains_key(state) {
+                true => self.scene.error_at(
+                    "experiments",
+                    format!("a start is a formula of '{name}', which goes on from what was before"),
+                    format!("set '{name}' in the experiment as well, or give a formula of parameters"),
+                ),
+                false => self.scene.error_at(
+                    &format!("initial.{name}"),
+                    format!("the start of '{name}' depends on itself"),
+                    "give it a value, or a formula of parameters",
+                ),
+            });
         }
         let mut start = self.put_in(&start, parameters)?.into_iter();
         let rates = self.put_in(&self.rates.clone(), parameters)?;
@@ -261,11 +268,12 @@ impl<'s> Building<'s> {
             settings.push(set.0);
             experiments.push(JointExperiment { name: name.clone(), before, phase });
         }
+        let places: HashMap<&str, usize> =
+            scene.experiments.iter().enumerate().map(|(at, (name, _))| (name.as_str(), at)).collect();
         let mut measurements = Vec::new();
         let mut known: HashMap<(usize, String, String), [NodeId; 2]> = HashMap::new();
         for row in &rows.rows {
-            let experiment = scene.experiments.iter().position(|(name, _)| *name == row.experiment);
-            let Some(experiment) = experiment else {
+            let Some(experiment) = places.get(row.experiment.as_str()).copied() else {
                 let all = scene.experiments.iter().map(|(name, _)| name.as_str());
                 let help = match nearest(&row.experiment, all.clone()) {
                     Some(near) => format!("perhaps you meant '{near}'"),

@@ -12,6 +12,10 @@ use std::path::{Path, PathBuf};
 const MOST_STARTS: usize = 100_000;
 const MOST_STEPS: u64 = 100_000;
 
+/// The most experiments, and the most parameters: each is a column of every derivative.
+const MOST_EXPERIMENTS: usize = 10_000;
+const MOST_PARAMETERS: usize = 1_000;
+
 /// A number, or a formula.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(untagged)]
@@ -249,6 +253,24 @@ fn checked(keys: Keys, places: &Places<'_>, name: &str, text: &str) -> Result<Jo
             "no parameter is estimated".to_owned(),
             "add, for instance: k = { bounds = [1e-5, 1e5] }",
         );
+    }
+    if keys.experiments.len() > MOST_EXPERIMENTS || keys.parameters.len() > MOST_PARAMETERS {
+        let message =
+            format!("at most {MOST_EXPERIMENTS} experiments and {MOST_PARAMETERS} parameters are read");
+        return wrong("experiments", message, "fit a part of them");
+    }
+    if keys.search.steps == 0 {
+        return wrong(
+            "search.steps",
+            "a search without steps finds nothing".to_owned(),
+            "give one or more; starts = 0 only simulates the nominal values",
+        );
+    }
+    if keys.search.starts == 0
+        && let Some((name, _)) = keys.parameters.iter().find(|(_, own)| own.nominal.is_none())
+    {
+        let message = format!("without starts only nominal values are simulated, and '{name}' has none");
+        return wrong("search.starts", message, "ask for starts, or give each parameter a nominal value");
     }
     if keys.search.starts > MOST_STARTS || keys.search.steps > MOST_STEPS {
         return wrong(

@@ -3,7 +3,7 @@
 use super::keys::JointScene;
 use palmistry_fit::{
     ErrorLaw, Exactness, Information, JointFit, JointProblem, Likelihood, ParameterProfile,
-    SimulatedExperiments, fit, profile,
+    SimulatedExperiments, StartEnd, fit, profile,
 };
 use palmistry_lang::ReadError;
 use palmistry_observe::exceeded_with;
@@ -24,7 +24,7 @@ const FALSE_ALARM: f64 = 0.01;
 pub struct GoodnessOfFit {
     /// The sum of the squares of the residuals over the sizes of their errors.
     pub chi_square: f64,
-    /// Measurements without the parameters that are told.
+    /// Measurements without the directions of the parameters that are told.
     pub degrees: usize,
     /// How often chance leaves more.
     pub probability: f64,
@@ -68,7 +68,7 @@ impl JointAnswer {
     pub fn as_expected(&self) -> bool {
         let fits = self.goodness.is_none_or(|own| own.fits());
         match &self.fit {
-            Some(fit) => fit.is_ok() && fits,
+            Some(fit) => fit.as_ref().is_ok_and(|fit| fit.best().end == StartEnd::Converged) && fits,
             None => self.nominal.as_ref().is_none_or(|own| own.simulated.is_ok()),
         }
     }
@@ -149,7 +149,11 @@ impl JointExperiments {
             let best = found.best();
             answer.at_bounds = self.at_bounds(&best.found);
             let information = Information::of(&found.simulated, &answer.at_bounds);
-            answer.goodness = self.goodness(&found.simulated, &answer.at_bounds);
+            // where the search came to no end there is something better, and nothing to be tested
+            if best.end == StartEnd::Converged {
+                let told = information.directions.iter().filter(|one| one.deviation.is_finite()).count();
+                answer.goodness = self.goodness(&found.simulated, told);
+            }
             if self.scene.profiles {
                 let one = |place: usize| {
                     let deviation = information.deviations[place].unwrap_or(f64::INFINITY);
@@ -174,7 +178,8 @@ impl JointExperiments {
         self.problem().parameters.iter().zip(found).map(is_at).collect()
     }
 
-    fn goodness(&self, simulated: &SimulatedExperiments, at_bounds: &[bool]) -> Option<GoodnessOfFit> {
+    /// A test of fit where so many directions of the parameters are told: what is not told explains nothing.
+    fn goodness(&self, simulated: &SimulatedExperiments, told: usize) -> Option<GoodnessOfFit> {
         let problem = self.problem();
         let sought: Vec<_> = problem.parameters.iter().map(|one| one.symbol).collect();
         let sizes = problem.system.graph.symbols_of(problem.measurements.iter().map(|one| one.size));
@@ -184,7 +189,6 @@ impl JointExperiments {
         if !is_known || !is_normal || has_prior {
             return None;
         }
-        let told = at_bounds.iter().filter(|is_at| !**is_at).count();
         let degrees = problem.measurements.len().checked_sub(told).filter(|degrees| *degrees > 0)?;
         let probability = exceeded_with(simulated.chi_square, degrees as f64, 0.0);
         Some(GoodnessOfFit { chi_square: simulated.chi_square, degrees, probability })

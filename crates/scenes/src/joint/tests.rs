@@ -101,6 +101,9 @@ fn mistakes_are_named_where_they_are() {
         ("both = {", "x = {", "the scene says nothing of the errors of 'both'"),
         ("[experiments.two]", "[experiments.too]", "the scene has no experiment 'two'"),
         ("starts = 0", "starts = 1000000", "at most 100000 starts"),
+        ("starts = 0", "starts = 2\nsteps = 0", "a search without steps finds nothing"),
+        ("1e2], nominal = 0.5", "1e2]", "only nominal values are simulated, and 'k' has none"),
+        ("x = 4, s = \"r/2\" }", "x = \"y/2\" }\nbefore = {}", "goes on from what was before"),
         ("title", "titel", "unknown key 'titel'"),
         ("m.csv", "n.csv", "there is no file"),
         ("law = \"log-normal\"", "law = \"cauchy\"", "'cauchy' is not known"),
@@ -125,6 +128,31 @@ fn mistakes_are_named_where_they_are() {
     }
     let still = MODEL.replace("drift f\n  x' = -k*x\n  y' = r*k*x\n", "field f\n  x' = -k*x\n  y' = r*k*x\n");
     assert!(experiments(SCENE, &still, ROWS).err().unwrap().message.contains("no drift"));
+}
+
+/// Of two factors that nothing tells apart one number is told: a test of fit counts what is told, and each factor is not determined.
+#[test]
+fn what_is_not_told_explains_nothing() {
+    let scene = SCENE
+        .replace("x = \"2*a\"", "x = \"a*b\"")
+        .replace("{ size = \"e*q\", on = \"log10\" }", "{ size = 0.1 }")
+        .replace(
+            "a = { bounds = [-5, 5], nominal = 1.5 }\n",
+            "a = { bounds = [0.1, 10] }\nb = { bounds = [0.1, 10] }\n",
+        )
+        .replace("starts = 0", "starts = 4");
+    let scene: String =
+        scene.lines().filter(|line| !line.starts_with("e = ")).map(|line| format!("{line}\n")).collect();
+    let rows = "experiment,output,time,value\none,both,0,3\none,both,1,6\none,both,2,9\none,both,4,13\none,both,8,16\n";
+    let own = experiments(&scene, MODEL, rows).unwrap();
+    let answer = own.run(&|| false, &|| ());
+    let fit = answer.fit.unwrap().unwrap();
+    assert_eq!(fit.best().end, palmistry_fit::StartEnd::Converged);
+    // k, and the product
+    assert_eq!(answer.goodness.unwrap().degrees, 3);
+    let deviations = answer.information.unwrap().deviations;
+    assert!(deviations[0].unwrap().is_infinite() && deviations[1].unwrap().is_infinite());
+    assert!(deviations[2].unwrap() < 1.0);
 }
 
 /// Other scenes are left to others.
