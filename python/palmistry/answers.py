@@ -622,15 +622,15 @@ class Observation(Answer):
         """What is estimated, at the beginning of the first window of the method that is shown: name, estimate, deviation.
 
         deviation: a standard deviation; infinite where it is unobservable or what is estimated was held; NaN where the search came to no end, and the estimate is where it stopped.
-        Of several experiments the best parameters; NaN of one that lies at a bound.
+        Of several experiments the best parameters; NaN too of one that lies at a bound.
         """
         import numpy
 
         if self.json.get("kind") == "experiments":
             found = self.json["parameters"]
             slopes = {"linear": lambda value: 1.0, "log": lambda value: value, "log10": lambda value: value * numpy.log(10)}
-            at_bound = [one["standing"] == "at a bound" for one in found]
-            spread = [numpy.nan if held else numpy.inf if one["deviation"] is None else one["deviation"] * slopes[one["scale"]](one["value"]) for one, held in zip(found, at_bound)]
+            unknown = [one["standing"] in ("at a bound", "search not ended") for one in found]
+            spread = [numpy.nan if held else numpy.inf if one["deviation"] is None else one["deviation"] * slopes[one["scale"]](one["value"]) for one, held in zip(found, unknown)]
             return Table({"name": numpy.array([one["name"] for one in found]), "estimate": numpy.array([one["value"] for one in found], dtype=float), "deviation": numpy.array(spread, dtype=float)})
 
         states = self.updates[0]["states"] if self.updates else {}

@@ -266,12 +266,6 @@ fn checked(keys: Keys, places: &Places<'_>, name: &str, text: &str) -> Result<Jo
             "give one or more; starts = 0 only simulates the nominal values",
         );
     }
-    if keys.search.starts == 0
-        && let Some((name, _)) = keys.parameters.iter().find(|(_, own)| own.nominal.is_none())
-    {
-        let message = format!("without starts only nominal values are simulated, and '{name}' has none");
-        return wrong("search.starts", message, "ask for starts, or give each parameter a nominal value");
-    }
     if keys.search.starts > MOST_STARTS || keys.search.steps > MOST_STEPS {
         return wrong(
             "search",
@@ -359,6 +353,13 @@ fn checked(keys: Keys, places: &Places<'_>, name: &str, text: &str) -> Result<Jo
             nominal: own.nominal,
             prior,
         });
+    }
+    if keys.search.starts == 0
+        && let Some(own) = parameters.iter().find(|own| own.nominal.is_none())
+    {
+        let message =
+            format!("without starts only nominal values are simulated, and '{}' has none", own.name);
+        return wrong("search.starts", message, "ask for starts, or give each parameter a nominal value");
     }
     if let Some((name, value)) = keys.known.iter().find(|(_, value)| !value.is_finite()) {
         return wrong(&format!("known.{name}"), format!("{value} is no finite number"), "give one");
