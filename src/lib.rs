@@ -77,6 +77,8 @@ pub use palmistry_coq as coq;
 
 pub use palmistry_rank::{observability, sweep};
 
+pub use palmistry_reduce as reduction;
+
 pub use palmistry_prove::{certificate, claim};
 #[doc(hidden)]
 pub use palmistry_prove::{drops, evidence};

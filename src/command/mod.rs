@@ -13,6 +13,7 @@ mod claims;
 mod completions;
 mod coq;
 mod demo;
+mod derived;
 mod eval;
 mod fmt;
 mod import;
@@ -32,6 +33,7 @@ mod poses;
 mod prove;
 mod rank;
 mod recheck;
+mod reduce;
 mod reparametrise;
 mod shards;
 mod slow_told;
@@ -85,6 +87,7 @@ enum Verb {
     Prove(prove::Prove),
     Check(check::Check),
     Rank(rank::Rank),
+    Reduce(reduce::Reduce),
     Recheck(recheck::Recheck),
     Certify(certify::Certify),
     Trade(trade::Trade),
@@ -186,6 +189,7 @@ impl Verb {
             Verb::Prove(verb) => verb.claims.json,
             Verb::Check(verb) => verb.json,
             Verb::Rank(verb) => verb.json,
+            Verb::Reduce(verb) => verb.json,
             Verb::Recheck(verb) => verb.json,
             Verb::Certify(verb) => verb.json,
             Verb::Trade(verb) => verb.json,
@@ -220,6 +224,7 @@ impl Verb {
             Verb::Prove(verb) => verb.run(),
             Verb::Check(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Rank(verb) => verb.run(),
+            Verb::Reduce(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Recheck(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Certify(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Trade(verb) => interrupt::watched(move || verb.run(), nothing),

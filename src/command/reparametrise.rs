@@ -1,9 +1,9 @@
 //! `palmistry rank --reparametrise`: a system without what is not seen, as a proof file, and whether its claims are proved.
 
-use palmistry::foreign::name_of;
+use super::derived::{decided, import_path};
 use palmistry::observability::reparametrise;
-use palmistry::{RankAnswer, System, prove};
-use std::path::{Component, Path, PathBuf};
+use palmistry::{RankAnswer, System};
+use std::path::Path;
 
 /// A proof file of the system without what is not seen.
 pub(crate) struct Reparametrisation {
@@ -41,34 +41,9 @@ pub(crate) fn reparametrisation(
             false => "the question has conditions on states".to_owned(),
         });
     };
-    let folder = out.parent().unwrap_or(Path::new(""));
-    let import = from(folder, file);
+    let import = import_path(file, Some(out));
     let text = reparametrise(system, found, &import).map_err(|why| why.to_string())?;
-    // the folder that the import is named from may not be there yet
-    let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-    let there = text.replacen(&format!("\"{import}\""), &format!("\"{}\"", name_of(&whole)), 1);
-    let read = System::parse(&name_of(out), &there, Path::new(""));
-    let reduced = read.map_err(|error| format!("it cannot be read back: {error}"))?;
-    let outcomes = prove(&reduced);
+    let (_, outcomes) = decided(&text, &import, file, out)?;
     let proved = outcomes.iter().filter(|outcome| outcome.ok).count();
     Ok(Reparametrisation { text, claims: outcomes.len(), proved })
-}
-
-/// A file as it is named from a folder.
-fn from(folder: &Path, file: &Path) -> String {
-    let whole = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let (folder, file) = (whole(folder_or_here(folder)), whole(file));
-    let parts = |path: &Path| -> Vec<String> {
-        let plain = path.components().filter(|part| !matches!(part, Component::CurDir));
-        plain.map(|part| part.as_os_str().to_string_lossy().into_owned()).collect()
-    };
-    let (to, at) = (parts(&file), parts(&folder));
-    let common = to.iter().zip(&at).take_while(|(one, other)| one == other).count();
-    let up = std::iter::repeat_n("..".to_owned(), at.len() - common);
-    let path: PathBuf = up.chain(to[common..].iter().cloned()).collect();
-    path.to_string_lossy().into_owned()
-}
-
-fn folder_or_here(folder: &Path) -> &Path {
-    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }

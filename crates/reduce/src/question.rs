@@ -1,0 +1,46 @@
+//! What is asked of a reduction, and why there is none.
+
+/// Which conditions hold, and what is known.
+#[derive(Clone, Debug, Default)]
+pub struct ReduceQuestion {
+    /// Conditions in the language of proof files: `omega1 = 0`, `omega2 = omega1`. Each has to be solved for a state, a parameter or a signal in one way, and
+    /// has to stay met along every field that is kept.
+    pub conditions: Vec<String>,
+    /// States and unknown constants that somebody knows. A constant becomes a parameter; a state that moves becomes an output.
+    pub known: Vec<String>,
+    /// Input fields that nothing drives.
+    pub undriven: Vec<String>,
+}
+
+/// Why a system is not written smaller.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // names and messages say it
+pub enum NotReduced {
+    /// Steps, several experiments, or no field.
+    #[error("{why}")]
+    Kind { why: String },
+    /// A condition cannot be read or solved.
+    #[error("the condition '{condition}': {why}")]
+    Condition { condition: String, why: String },
+    /// Conditions that can be met in several ways.
+    #[error("the conditions can be met in {ways} ways: {list}; write the one that is meant")]
+    SeveralWays { ways: usize, list: String },
+    /// A condition that motion leaves.
+    #[error("'{condition}' does not stay met: along {field} the rate of one side less the other is {rate}")]
+    NotKept { condition: String, field: String, rate: String },
+    /// A rate or an output that divides by zero where the conditions hold.
+    #[error("where the conditions hold, {what} divides by zero")]
+    Pole { what: String },
+    /// A name that is no unknown.
+    #[error("'{name}' is no state and no unknown constant of the system; these are {unknowns}")]
+    NoUnknown { name: String, unknowns: String },
+    /// A name that is no input.
+    #[error("'{name}' is no input of the system; its inputs are {inputs}")]
+    NoInput { name: String, inputs: String },
+    /// A formula that nobody would read.
+    #[error("the rate of '{name}' is too long to be written")]
+    TooLong { name: String },
+    /// Nothing is left.
+    #[error("nothing is left: the outputs depend on no unknown under these conditions")]
+    Nothing,
+}

@@ -1,0 +1,403 @@
+//! What remains of a system while conditions are put in and things are left out.
+
+use super::laws::{Law, laws};
+use super::question::{NotReduced, ReduceQuestion};
+use palmistry_lang::{Assignment, Role, System, Time, UnknownKind, nearest};
+use palmistry_math::expression::{Derivation, NodeId, Symbol, ZeroTest, expand_angles, identically_zero};
+use palmistry_rank::observability::{parse_condition, solve_conditions};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use std::collections::HashSet;
+
+/// Why something of the larger system is not in the smaller one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum WhyLeftOut {
+    /// The conditions give its value: the value.
+    Fixed(String),
+    /// It is constant and somebody knows it: a parameter of the smaller system.
+    KnownConstant,
+    /// It is constant and an output: a parameter of the smaller system.
+    MeasuredConstant,
+    /// No output depends on it: it is unobservable.
+    NoOutputDependsOnIt,
+    /// A conservation law gives it by the others: the law, and the name of the constant.
+    Conserved {
+        /// What is conserved: `S + I + R`.
+        law: String,
+        /// The new unknown constant.
+        total: String,
+    },
+}
+
+/// A state or an unknown constant that was left out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LeftOutState {
+    /// Its name.
+    pub name: String,
+    /// Why it is not there any more.
+    pub why: WhyLeftOut,
+}
+
+/// An output of the larger system.
+#[derive(Clone, Debug)]
+pub(crate) struct RemainingOutput {
+    pub node: NodeId,
+    /// Whether it is an equation: `output 0 = y`.
+    pub is_zero: bool,
+    /// Whether the smaller system measures it: not so what is known anyway.
+    pub is_kept: bool,
+}
+
+/// A system on its way to a smaller one.
+pub(crate) struct Remaining {
+    pub system: System,
+    /// States and unknown constants that are left; signals are none of them.
+    pub states: Vec<Symbol>,
+    /// The places of the fields that are kept.
+    pub fields: Vec<usize>,
+    /// For each field that is kept the rates of `states`.
+    pub rates: Vec<Vec<NodeId>>,
+    pub outputs: Vec<RemainingOutput>,
+    /// States that move and are known: outputs that the larger system does not have.
+    pub further_outputs: Vec<Symbol>,
+    /// What the conditions give.
+    pub values: Assignment,
+    /// Constants that have become parameters.
+    pub constants: Vec<Symbol>,
+    pub laws: Vec<Law>,
+    pub left_out: Vec<LeftOutState>,
+    pub remarks: Vec<String>,
+    /// The order in which things are left out is that of the larger system.
+    all: Vec<Symbol>,
+}
+
+impl Remaining {
+    /// All of a system, but for inputs that nothing drives.
+    ///
+    /// # Errors
+    /// A kind of system that is not written anew; an input that there is not.
+    pub fn new(system: &System, question: &ReduceQuestion) -> Result<Remaining, NotReduced> {
+        let kind = |why: String| NotReduced::Kind { why };
+        system.require_motion().map_err(kind)?;
+        if system.time == Time::Discrete {
+            return Err(kind("systems in discrete time are not reduced".to_owned()));
+        }
+        if system.states.iter().any(|state| system.symbol_name(*state).contains('@')) {
+            return Err(kind("systems with several experiments are not reduced".to_owned()));
+        }
+        let signals: HashSet<Symbol> = system.signal_chains().into_iter().flatten().collect();
+        if system.known.iter().any(|state| !signals.contains(state)) {
+            return Err(kind("systems with known initial conditions are not reduced".to_owned()));
+        }
+        let inputs: Vec<&str> = system
+            .fields
+            .iter()
+            .filter(|field| field.role == Role::Input && !field.name.contains('\''))
+            .map(|field| field.name.as_str())
+            .collect();
+        if let Some(name) = question.undriven.iter().find(|name| !inputs.contains(&name.as_str())) {
+            return Err(NotReduced::NoInput { name: name.clone(), inputs: inputs.join(", ") });
+        }
+        // that a known signal may change is a field of its own, which no file writes
+        let is_written = |field: &usize| !system.fields[*field].name.contains('\'');
+        let kept = |field: &usize| {
+            is_written(field) && !question.undriven.contains(&system.fields[*field].name)
+        };
+        let fields: Vec<usize> = system.moving_fields().into_iter().filter(kept).collect();
+        let mut system = system.clone();
+        let states: Vec<Symbol> =
+            system.states.iter().copied().filter(|state| !signals.contains(state)).collect();
+        let rates = fields
+            .iter()
+            .map(|field| states.iter().map(|state| component(&mut system, *field, *state)).collect())
+            .collect();
+        let zeros = system.zero_outputs();
+        let outputs = system
+            .outputs
+            .iter()
+            .map(|(_, node)| RemainingOutput { node: *node, is_zero: zeros.contains(node), is_kept: true })
+            .collect();
+        Ok(Remaining {
+            all: states.clone(),
+            states,
+            fields,
+            rates,
+            outputs,
+            further_outputs: Vec::new(),
+            values: Assignment::new(),
+            constants: Vec::new(),
+            laws: Vec::new(),
+            left_out: Vec::new(),
+            remarks: Vec::new(),
+            system,
+        })
+    }
+
+    /// How many unknowns there are, and how many of them move.
+    pub fn counts(&self) -> (usize, usize) {
+        let moving = (0..self.states.len()).filter(|place| !self.is_constant(*place)).count();
+        (self.states.len(), moving)
+    }
+
+    /// The outputs that are measured.
+    pub fn output_nodes(&self) -> impl Iterator<Item = NodeId> {
+        self.outputs.iter().filter(|output| output.is_kept).map(|output| output.node)
+    }
+
+    /// The conditions as they were solved, with what the conservation laws give.
+    pub fn conditions(&self) -> Vec<String> {
+        let mut solved: Vec<(&str, String)> = self
+            .values
+            .iter()
+            .map(|(symbol, value)| (self.system.symbol_name(*symbol), self.system.graph.text(*value)))
+            .collect();
+        solved.sort_unstable();
+        solved.into_iter().map(|(name, value)| format!("{name} = {value}")).collect()
+    }
+
+    /// Whether an unknown has the rate zero along every field, as it is written.
+    pub fn is_constant(&self, place: usize) -> bool {
+        self.rates.iter().all(|rates| {
+            self.system.graph.constant_value(rates[place]).is_some_and(|rate| rate.is_zero())
+        })
+    }
+
+    /// Puts the conditions in, and sees that every field keeps them.
+    ///
+    /// # Errors
+    /// A condition that cannot be solved, that motion leaves, or under which something is divided by zero.
+    pub fn put_in_conditions(&mut self, question: &ReduceQuestion) -> Result<(), NotReduced> {
+        if question.conditions.is_empty() {
+            return Ok(());
+        }
+        self.solve(question)?;
+        let chains = self.system.signal_chains();
+        // a signal that has a value for good has derivatives that are zero
+        for chain in &chains {
+            let is_number = |symbol: &Symbol| {
+                self.values.get(symbol).is_some_and(|value| self.system.graph.constant_value(*value).is_some())
+            };
+            if let Some(from) = chain.iter().position(is_number) {
+                for derivative in &chain[from + 1..] {
+                    let zero = self.system.graph.integer(0);
+                    self.values.entry(*derivative).or_insert(zero);
+                }
+            }
+        }
+        self.has_values()?;
+        self.stays_met(&chains.concat())?;
+        let places: Vec<usize> =
+            (0..self.states.len()).filter(|place| self.values.contains_key(&self.states[*place])).collect();
+        for place in places.into_iter().rev() {
+            let value = self.system.graph.text(self.values[&self.states[place]]);
+            self.leave_out(place, WhyLeftOut::Fixed(value));
+        }
+        let values = self.values.clone();
+        self.substitute(&values);
+        Ok(())
+    }
+
+    fn solve(&mut self, question: &ReduceQuestion) -> Result<(), NotReduced> {
+        let mut conditions = Vec::new();
+        for text in &question.conditions {
+            let refused = |why: String| NotReduced::Condition { condition: text.clone(), why };
+            conditions.extend(parse_condition(text).map_err(refused)?);
+        }
+        let all = question.conditions.join(", ");
+        let branches = solve_conditions(&mut self.system, &conditions)
+            .map_err(|why| NotReduced::Condition { condition: all.clone(), why: why.to_string() })?;
+        let [branch] = branches.as_slice() else {
+            let ways = branches.iter().map(|branch| branch.steps.join(", ")).collect::<Vec<_>>().join("; or ");
+            if branches.is_empty() {
+                return Err(NotReduced::Condition { condition: all, why: "no state meets it".to_owned() });
+            }
+            return Err(NotReduced::SeveralWays { ways: branches.len(), list: ways });
+        };
+        if !branch.up_to_turns.is_empty() || !branch.assumed.is_empty() {
+            let why = match branch.assumed.is_empty() {
+                true => "it gives an angle up to whole turns; write the angle itself, as in phi = pi/2",
+                false => "an inequality leaves nothing out; write equations",
+            };
+            return Err(NotReduced::Condition { condition: all, why: why.to_owned() });
+        }
+        self.values.clone_from(&branch.values);
+        Ok(())
+    }
+
+    /// That rates and outputs have values where the conditions hold.
+    fn has_values(&mut self) -> Result<(), NotReduced> {
+        let values = self.values.clone();
+        for (field, rates) in self.fields.iter().zip(&self.rates) {
+            for (state, rate) in self.states.iter().zip(rates) {
+                if self.system.graph.vanishing_divisor(&[*rate], &values).is_some() {
+                    let (state, field) = (self.system.symbol_name(*state), &self.system.fields[*field].name);
+                    return Err(NotReduced::Pole { what: format!("the rate of '{state}' along {field}") });
+                }
+            }
+        }
+        for (output, (name, _)) in self.outputs.iter().zip(&self.system.outputs) {
+            if self.system.graph.vanishing_divisor(&[output.node], &values).is_some() {
+                return Err(NotReduced::Pole { what: format!("the output '{name}'") });
+            }
+        }
+        Ok(())
+    }
+
+    /// That no field leads out of the conditions. Of a signal nothing has to be shown: that it has a value is what is said.
+    fn stays_met(&mut self, signals: &[Symbol]) -> Result<(), NotReduced> {
+        let mut rng = ChaCha8Rng::seed_from_u64(0x006b_6570_7400); // any fixed seed: the claims of the file are proved anew
+        let mut solved: Vec<(Symbol, NodeId)> = self.values.iter().map(|(symbol, value)| (*symbol, *value)).collect();
+        solved.sort_unstable_by_key(|(symbol, _)| *symbol);
+        let values = self.values.clone();
+        for (symbol, value) in solved.iter().filter(|(symbol, _)| !signals.contains(symbol)) {
+            for field in self.fields.clone() {
+                let slopes = self.system.fields[field].components.iter().copied().collect();
+                let mut along = Derivation::new(slopes);
+                let own = component(&mut self.system, field, *symbol);
+                let of_value = along.apply(&mut self.system.graph, *value);
+                let difference = self.system.graph.sub(own, of_value);
+                let there = self.system.graph.substitute(&[difference], &values)[0];
+                let is_angle = &self.system.angle_test();
+                let expanded = expand_angles(&mut self.system.graph, &[there], is_angle);
+                if !matches!(
+                    identically_zero(&self.system.graph, &expanded, is_angle, &mut rng),
+                    ZeroTest::Zero { .. }
+                ) {
+                    let condition =
+                        format!("{} = {}", self.system.symbol_name(*symbol), self.system.graph.text(*value));
+                    let field = format!("{} {}", self.system.fields[field].role.name(), self.system.fields[field].name);
+                    return Err(NotReduced::NotKept { condition, field, rate: self.system.graph.text(there) });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes constants that are known, or measured by themselves, as parameters; a state that moves and is known as an output.
+    ///
+    /// # Errors
+    /// A name that is no unknown.
+    pub fn take_constants_as_known(&mut self, question: &ReduceQuestion) -> Result<(), NotReduced> {
+        for name in &question.known {
+            let symbol = self.system.find_symbol(name).filter(|symbol| self.all.contains(symbol));
+            let Some(symbol) = symbol else {
+                let names: Vec<&str> = self.all.iter().map(|one| self.system.symbol_name(*one)).collect();
+                let near = nearest(name, names.iter().copied()).map(|near| format!(" (perhaps '{near}')"));
+                let unknowns = names.join(", ") + &near.unwrap_or_default();
+                return Err(NotReduced::NoUnknown { name: name.clone(), unknowns });
+            };
+            let Some(place) = self.states.iter().position(|state| *state == symbol) else {
+                continue; // the conditions give it
+            };
+            if self.is_constant(place) {
+                self.constants.push(symbol);
+                self.leave_out(place, WhyLeftOut::KnownConstant);
+            } else if !self.is_measured(symbol) {
+                self.further_outputs.push(symbol);
+                self.remarks.push(format!("'{name}' moves: it is known as an output, and stays a state"));
+            }
+        }
+        for place in (0..self.states.len()).rev() {
+            let symbol = self.states[place];
+            if self.is_measured(symbol) && self.is_constant(place) {
+                self.constants.push(symbol);
+                self.leave_out(place, WhyLeftOut::MeasuredConstant);
+            }
+        }
+        // an output that depends on nothing unknown tells nothing
+        let unknown: HashSet<Symbol> = self.unknown_symbols();
+        for output in &mut self.outputs {
+            let mut depends = self.system.graph.symbols_of([output.node]).into_iter();
+            output.is_kept = output.is_zero || depends.any(|symbol| unknown.contains(&symbol));
+        }
+        Ok(())
+    }
+
+    fn is_measured(&self, symbol: Symbol) -> bool {
+        self.outputs
+            .iter()
+            .any(|output| !output.is_zero && self.system.graph.as_symbol(output.node) == Some(symbol))
+    }
+
+    /// What is not known: states, unknown constants, unknown signals.
+    fn unknown_symbols(&self) -> HashSet<Symbol> {
+        let signals = self.system.signal_chains().into_iter().flatten();
+        let unknown = signals.filter(|symbol| !self.system.known.contains(symbol));
+        self.states.iter().copied().chain(unknown).collect()
+    }
+
+    /// Leaves out states and constants on which no output depends, by itself or by the rate of something on which it does.
+    pub fn leave_out_what_no_output_needs(&mut self) {
+        let outputs: Vec<NodeId> = self.output_nodes().collect();
+        let mut needed: HashSet<Symbol> = self.system.graph.symbols_of(outputs).into_iter().collect();
+        needed.extend(&self.further_outputs);
+        loop {
+            let of_needed: Vec<NodeId> = (0..self.states.len())
+                .filter(|place| needed.contains(&self.states[*place]))
+                .flat_map(|place| self.rates.iter().map(move |rates| rates[place]))
+                .collect();
+            let before = needed.len();
+            needed.extend(self.system.graph.symbols_of(of_needed));
+            if needed.len() == before {
+                break;
+            }
+        }
+        for place in (0..self.states.len()).rev() {
+            if !needed.contains(&self.states[place]) {
+                self.leave_out(place, WhyLeftOut::NoOutputDependsOnIt);
+            }
+        }
+    }
+
+    /// Takes the last state of each conservation law that is no output by the others, and the conserved amount as an unknown constant in its place.
+    pub fn use_conservation_laws(&mut self) {
+        for law in laws(self) {
+            let mut values = Assignment::new();
+            let given = law.given(&mut self.system.graph);
+            values.insert(law.state, given);
+            let place = self.states.iter().position(|state| *state == law.state);
+            if let Some(place) = place {
+                let why = WhyLeftOut::Conserved { law: law.text.clone(), total: law.name.clone() };
+                self.leave_out(place, why);
+                self.substitute(&values);
+                let zero = self.system.graph.integer(0);
+                self.states.push(law.total);
+                self.rates.iter_mut().for_each(|rates| rates.push(zero));
+                self.laws.push(law);
+            }
+        }
+    }
+
+    fn leave_out(&mut self, place: usize, why: WhyLeftOut) {
+        let symbol = self.states.remove(place);
+        self.rates.iter_mut().for_each(|rates| {
+            rates.remove(place);
+        });
+        self.left_out.push(LeftOutState { name: self.system.symbol_name(symbol).to_owned(), why });
+        let order = |one: &LeftOutState| {
+            self.all.iter().position(|symbol| self.system.symbol_name(*symbol) == one.name)
+        };
+        self.left_out.sort_by_key(order);
+    }
+
+    /// Puts values into all rates and outputs.
+    fn substitute(&mut self, values: &Assignment) {
+        for rates in &mut self.rates {
+            *rates = self.system.graph.substitute(rates, values);
+        }
+        for output in &mut self.outputs {
+            output.node = self.system.graph.substitute(&[output.node], values)[0];
+        }
+    }
+
+    /// Whether an unknown is a constant by its declaration.
+    pub fn is_declared_constant(&self, symbol: Symbol) -> bool {
+        self.system.unknown_kind(symbol) == Some(UnknownKind::Parameter)
+    }
+}
+
+/// What a field does to a symbol.
+fn component(system: &mut System, field: usize, symbol: Symbol) -> NodeId {
+    let found = system.fields[field].components.iter().find(|(other, _)| *other == symbol);
+    found.map(|(_, node)| *node).unwrap_or_else(|| system.graph.integer(0))
+}

@@ -1,0 +1,464 @@
+//! The smaller system as a proof file.
+
+use super::question::NotReduced;
+use super::remaining::{LeftOutState, Remaining, WhyLeftOut};
+use palmistry_lang::{Kind, Value};
+use palmistry_math::expression::{Node, NodeId, Symbol};
+use std::collections::{BTreeSet, HashMap, HashSet};
+use std::fmt::Write;
+
+/// The name under which the larger system is imported.
+const LARGER: &str = "larger";
+
+/// A definition of the larger file that the smaller one still uses.
+struct Definition {
+    name: String,
+    node: NodeId,
+}
+
+/// Formulas of the smaller system in the names of its definitions.
+struct Names {
+    /// In an order in which each is defined above its use.
+    definitions: Vec<Definition>,
+}
+
+impl Names {
+    /// The definitions that are numbers and stand in the formulas, none of them a single symbol.
+    fn new(remaining: &mut Remaining) -> Names {
+        let mut values = remaining.values.clone();
+        for law in &remaining.laws {
+            let given = law.given(&mut remaining.system.graph);
+            values.insert(law.state, given);
+        }
+        // what a condition gives may hold a state that a law gives
+        for law in &remaining.laws {
+            let given = HashMap::from([(law.state, values[&law.state])]);
+            for value in values.values_mut() {
+                *value = remaining.system.graph.substitute(&[*value], &given)[0];
+            }
+        }
+        let numbers: Vec<(String, NodeId)> = remaining
+            .system
+            .definitions
+            .iter()
+            .filter(|(name, _)| !name.contains(['.', '[', '@']))
+            .filter_map(|(name, value)| match value {
+                Value::Scalar(node) => Some((name.clone(), *node)),
+                _ => None,
+            })
+            .collect();
+        let nodes: Vec<NodeId> = numbers.iter().map(|(_, node)| *node).collect();
+        let images = match remaining.system.graph.vanishing_divisor(&nodes, &values) {
+            // a definition that divides by zero is used by no rate, for those have values
+            Some(_) => numbers
+                .iter()
+                .map(|(_, node)| {
+                    let divides = remaining.system.graph.vanishing_divisor(&[*node], &values).is_some();
+                    (!divides).then(|| remaining.system.graph.substitute(&[*node], &values)[0])
+                })
+                .collect(),
+            None => {
+                remaining.system.graph.substitute(&nodes, &values).into_iter().map(Some).collect::<Vec<_>>()
+            }
+        };
+        let formulas: Vec<NodeId> =
+            remaining.rates.iter().flatten().copied().chain(remaining.output_nodes()).collect();
+        let order: HashMap<NodeId, usize> =
+            remaining.system.graph.reachable(formulas).into_iter().enumerate().map(|(at, id)| (id, at)).collect();
+        let mut taken = HashSet::new();
+        let mut definitions: Vec<(usize, Definition)> = Vec::new();
+        for ((name, _), node) in numbers.into_iter().zip(images) {
+            let Some(node) = node else { continue };
+            let is_plain = match remaining.system.graph.node(node) {
+                Node::Neg(inner) => remaining.system.graph.as_symbol(inner).is_some(),
+                _ => false,
+            };
+            let is_plain = is_plain
+                || remaining.system.graph.as_symbol(node).is_some()
+                || remaining.system.graph.constant_value(node).is_some();
+            if let (false, Some(at)) = (is_plain, order.get(&node))
+                && taken.insert(node)
+            {
+                definitions.push((*at, Definition { name, node }));
+            }
+        }
+        definitions.sort_by_key(|(at, _)| *at);
+        Names { definitions: definitions.into_iter().map(|(_, definition)| definition).collect() }
+    }
+
+    /// A formula, with definitions by their names but for the one that is being defined.
+    fn text(&self, remaining: &mut Remaining, node: NodeId, but: Option<NodeId>) -> String {
+        let graph = &mut remaining.system.graph;
+        let names: HashMap<NodeId, &str> = self
+            .definitions
+            .iter()
+            .filter(|definition| Some(definition.node) != but)
+            .map(|definition| (definition.node, definition.name.as_str()))
+            .collect();
+        let mut image: HashMap<NodeId, NodeId> = HashMap::new();
+        for id in graph.reachable([node]) {
+            let new = match names.get(&id) {
+                Some(name) => {
+                    let symbol = graph.intern(name);
+                    graph.symbol(symbol)
+                }
+                None => {
+                    let node = graph.node(id);
+                    graph.rebuild(node, |operand| image[&operand])
+                }
+            };
+            image.insert(id, new);
+        }
+        graph.text(image[&node])
+    }
+}
+
+/// What is printed of a formula that is too long begins so.
+const TOO_LONG: &str = "(an expression";
+
+pub(crate) fn text(remaining: &mut Remaining, import: &str) -> Result<String, NotReduced> {
+    if remaining.output_nodes().next().is_none() && remaining.further_outputs.is_empty() {
+        return Err(NotReduced::Nothing);
+    }
+    let names = Names::new(remaining);
+    let mut out = String::new();
+    head(&mut out, remaining, import);
+    declarations(&mut out, remaining);
+    for place in 0..names.definitions.len() {
+        let (name, node) = (names.definitions[place].name.clone(), names.definitions[place].node);
+        let value = names.text(remaining, node, Some(node));
+        if value.starts_with(TOO_LONG) {
+            return Err(NotReduced::TooLong { name });
+        }
+        let _ = writeln!(out, "let {name} = {value}");
+    }
+    fields(&mut out, remaining, &names)?;
+    outputs(&mut out, remaining, &names)?;
+    sample(&mut out, remaining, &names);
+    claims(&mut out, remaining, &names)?;
+    Ok(out)
+}
+
+fn head(out: &mut String, remaining: &Remaining, import: &str) {
+    let conditions = remaining.conditions();
+    let _ = writeln!(out, "# The least model of \"{}\"", one_line(&remaining.system.title));
+    if !conditions.is_empty() {
+        let _ = writeln!(out, "# where {}.", conditions.join(", "));
+    }
+    for LeftOutState { name, why } in &remaining.left_out {
+        let _ = match why {
+            WhyLeftOut::Fixed(value) => writeln!(out, "# {name} is left out: it is {value}"),
+            WhyLeftOut::KnownConstant => writeln!(out, "# {name} is a known constant: a parameter here"),
+            WhyLeftOut::MeasuredConstant => {
+                writeln!(out, "# {name} is measured and constant: a parameter here")
+            }
+            WhyLeftOut::NoOutputDependsOnIt => {
+                writeln!(out, "# {name} is left out: no output depends on it, so that it is unobservable")
+            }
+            WhyLeftOut::Conserved { law, total } => {
+                writeln!(out, "# {name} is left out: {law} is conserved, and is the unknown constant {total}")
+            }
+        };
+    }
+    for remark in &remaining.remarks {
+        let _ = writeln!(out, "# {remark}");
+    }
+    let title = one_line(&remaining.system.title);
+    let _ = writeln!(out, "\nsystem \"{title}: the least model\"\n");
+    let _ = writeln!(out, "use {LARGER} = \"{import}\"\n");
+}
+
+/// A title or a path in quotes ends where it ends.
+fn one_line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() || c == '"' { ' ' } else { c }).collect()
+}
+
+/// A name, and its dimension where the file declares some.
+fn declared(remaining: &Remaining, symbol: Symbol) -> String {
+    let name = remaining.system.symbol_name(symbol);
+    let dimension = match remaining.system.declares_dimensions() {
+        true => remaining.system.dimension_of(symbol),
+        false => None,
+    };
+    match dimension {
+        Some(dimension) if dimension.is_none() && remaining.system.is_angle(symbol) => format!("{name} : angle"),
+        Some(dimension) => format!("{name} : {dimension}"),
+        None => name.to_owned(),
+    }
+}
+
+fn declarations(out: &mut String, remaining: &Remaining) {
+    let totals: HashMap<Symbol, Symbol> =
+        remaining.laws.iter().map(|law| (law.total, law.state)).collect();
+    let of = |symbol: &Symbol| match totals.get(symbol) {
+        // a sum with rational factors has the dimension of its terms
+        Some(state) => {
+            let like = declared(remaining, *state);
+            let dimension = like.split_once(" : ").map(|(_, dimension)| format!(" : {dimension}"));
+            format!("{}{}", remaining.system.symbol_name(*symbol), dimension.unwrap_or_default())
+        }
+        None => declared(remaining, *symbol),
+    };
+    let (constants, states): (Vec<Symbol>, Vec<Symbol>) = remaining
+        .states
+        .iter()
+        .copied()
+        .partition(|state| remaining.is_declared_constant(*state) || totals.contains_key(state));
+    // a dimension holds for the names before it too: what has none stands by itself
+    let mut line = Vec::new();
+    for state in states.iter().map(of) {
+        let ends = !state.contains(':') && remaining.system.declares_dimensions();
+        line.push(state);
+        if ends {
+            let alone = line.pop();
+            lines_of_states(out, &mut line);
+            line.extend(alone);
+            lines_of_states(out, &mut line);
+        }
+    }
+    lines_of_states(out, &mut line);
+    for symbol in &constants {
+        let hint = remaining.system.hint(*symbol).map(|hint| format!(" = {hint}")).unwrap_or_default();
+        let _ = writeln!(out, "param {}{hint} unknown", of(symbol));
+    }
+    let mentioned = mentioned(remaining);
+    for (symbol, info) in remaining.system.symbols() {
+        let is_parameter = info.kind == Kind::Parameter && mentioned.contains(&symbol);
+        let is_declared = remaining.states.contains(&symbol);
+        if (is_parameter && !is_declared && remaining.system.derivative_of_signal(symbol).is_none())
+            || remaining.constants.contains(&symbol)
+        {
+            let value = info.default.as_ref().map(|value| format!(" = {value}")).unwrap_or_default();
+            let _ = writeln!(out, "param {}{value}", declared(remaining, symbol));
+        }
+    }
+    for chain in remaining.system.signal_chains() {
+        let Some(first) = chain.first() else { continue };
+        if !chain.iter().any(|symbol| mentioned.contains(symbol)) {
+            continue;
+        }
+        let name = remaining.system.symbol_name(*first);
+        let whole = declared(remaining, *first).replacen(name, &format!("{name}(t)"), 1);
+        if remaining.system.known.contains(first) {
+            let _ = writeln!(out, "known {whole}");
+        } else {
+            let _ = writeln!(out, "unknown {whole} order {}", chain.len() - 1);
+        }
+    }
+    let angles: Vec<&str> = remaining
+        .system
+        .symbols()
+        .filter(|(symbol, info)| {
+            info.is_angle && (remaining.states.contains(symbol) || mentioned.contains(symbol))
+        })
+        .map(|(symbol, _)| remaining.system.symbol_name(symbol))
+        .collect();
+    if !angles.is_empty() {
+        let _ = writeln!(out, "angle {}", angles.join(", "));
+    }
+    let declared: HashSet<&str> =
+        remaining.states.iter().chain(&mentioned).map(|one| remaining.system.symbol_name(*one)).collect();
+    for assumed in remaining.system.assumptions() {
+        if names_in(&assumed).all(|name| declared.contains(name)) {
+            let _ = writeln!(out, "assume {assumed}");
+        }
+    }
+    out.push('\n');
+}
+
+/// Writes the states of a list, where there are some, and empties it.
+fn lines_of_states(out: &mut String, list: &mut Vec<String>) {
+    if !list.is_empty() {
+        let _ = writeln!(out, "state {}", std::mem::take(list).join(", "));
+    }
+}
+
+/// The names in a formula; those of functions are none that stand alone.
+fn names_in(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !(c.is_alphanumeric() || "_'[]".contains(c)))
+        .filter(|word| word.starts_with(|c: char| c.is_alphabetic() || c == '_'))
+}
+
+/// The symbols of all formulas of the smaller system, and the constants that have become parameters.
+fn mentioned(remaining: &Remaining) -> BTreeSet<Symbol> {
+    let formulas = remaining.rates.iter().flatten().copied().chain(remaining.output_nodes());
+    remaining.system.graph.symbols_of(formulas).into_iter().chain(remaining.constants.iter().copied()).collect()
+}
+
+fn fields(out: &mut String, remaining: &mut Remaining, names: &Names) -> Result<(), NotReduced> {
+    for (place, field) in remaining.fields.clone().into_iter().enumerate() {
+        let (role, name) = {
+            let field = &remaining.system.fields[field];
+            (field.role.name(), field.name.clone())
+        };
+        let _ = writeln!(out, "\n{role} {name}");
+        let mut rests = false;
+        let totals: Vec<Symbol> = remaining.laws.iter().map(|law| law.total).collect();
+        for (at, state) in remaining.states.clone().into_iter().enumerate() {
+            if remaining.is_declared_constant(state) || totals.contains(&state) {
+                continue;
+            }
+            let rate = remaining.rates[place][at];
+            let text = names.text(remaining, rate, None);
+            let state = remaining.system.symbol_name(state);
+            if text.starts_with(TOO_LONG) {
+                return Err(NotReduced::TooLong { name: state.to_owned() });
+            }
+            if text == "0" {
+                rests = true;
+            } else {
+                let _ = writeln!(out, "  {state}' = {text}");
+            }
+        }
+        if rests {
+            let _ = writeln!(out, "  others' = 0");
+        }
+    }
+    Ok(())
+}
+
+fn outputs(out: &mut String, remaining: &mut Remaining, names: &Names) -> Result<(), NotReduced> {
+    let mut list = Vec::new();
+    let mut zeros = Vec::new();
+    for output in remaining.outputs.clone().into_iter().filter(|output| output.is_kept) {
+        let text = names.text(remaining, output.node, None);
+        if text.starts_with(TOO_LONG) {
+            return Err(NotReduced::TooLong { name: "an output".to_owned() });
+        }
+        if output.is_zero { zeros.push(text) } else { list.push(text) }
+    }
+    for symbol in &remaining.further_outputs {
+        list.push(remaining.system.symbol_name(*symbol).to_owned());
+    }
+    out.push('\n');
+    if !list.is_empty() {
+        let _ = writeln!(out, "output {}", list.join(", "));
+    }
+    for zero in zeros {
+        let _ = writeln!(out, "output 0 = {zero}");
+    }
+    Ok(())
+}
+
+/// The ranges of what is left, and what samples avoid.
+fn sample(out: &mut String, remaining: &mut Remaining, names: &Names) {
+    let mentioned = mentioned(remaining);
+    let mut lines = Vec::new();
+    for (symbol, info) in remaining.system.symbols() {
+        if let (true, Some(range)) =
+            (remaining.states.contains(&symbol) || mentioned.contains(&symbol), &info.range)
+        {
+            let name = remaining.system.symbol_name(symbol);
+            lines.push(format!("{name} in [{}, {}]", range.low, range.high));
+        }
+    }
+    let mut values = remaining.values.clone();
+    for law in &remaining.laws {
+        let given = law.given(&mut remaining.system.graph);
+        values.insert(law.state, given);
+    }
+    let mut avoided = Vec::new();
+    for (_, node) in remaining.system.avoid.clone() {
+        if remaining.system.graph.vanishing_divisor(&[node], &values).is_some() {
+            continue;
+        }
+        let there = remaining.system.graph.substitute(&[node], &values)[0];
+        // what is not zero has an opposite that is not
+        let there = match remaining.system.graph.node(there) {
+            Node::Neg(inner) => inner,
+            _ => there,
+        };
+        let symbols = remaining.system.graph.symbols_of([there]);
+        let is_there = symbols.iter().all(|symbol| mentioned.contains(symbol) || remaining.states.contains(symbol));
+        let text = names.text(remaining, there, None);
+        if is_there && !symbols.is_empty() && !text.starts_with(TOO_LONG) && !avoided.contains(&text) {
+            avoided.push(text);
+        }
+    }
+    if !avoided.is_empty() {
+        lines.push(format!("avoid {}", avoided.join(", ")));
+    }
+    if !lines.is_empty() {
+        let _ = writeln!(out, "\nsample\n  {}", lines.join("\n  "));
+    }
+}
+
+fn claims(out: &mut String, remaining: &mut Remaining, names: &Names) -> Result<(), NotReduced> {
+    let solved = remaining.conditions();
+    let place = |conditions: &[String]| match conditions.is_empty() {
+        true => String::new(),
+        false => format!(" where {}", conditions.join(", ")),
+    };
+    let mut all = solved.clone();
+    for law in remaining.laws.clone() {
+        let given = law.given(&mut remaining.system.graph);
+        let value = remaining.system.graph.text(given);
+        all.push(format!("{} = {value}", remaining.system.symbol_name(law.state)));
+    }
+    let (fixed_place, whole_place) = (place(&solved), place(&all));
+    let fields: Vec<String> =
+        remaining.fields.iter().map(|field| remaining.system.fields[*field].name.clone()).collect();
+    let mut constant = Vec::new();
+    let mut values: Vec<(Symbol, NodeId)> =
+        remaining.values.iter().map(|(symbol, value)| (*symbol, *value)).collect();
+    values.sort_unstable_by_key(|(symbol, _)| *symbol);
+    for (symbol, value) in values {
+        let name = remaining.system.symbol_name(symbol);
+        // a parameter and a signal have the value that is said
+        let is_fixed = |one: &LeftOutState| one.name == name && matches!(one.why, WhyLeftOut::Fixed(_));
+        if remaining.left_out.iter().any(is_fixed) {
+            // a number has no rate
+            constant.push(match remaining.system.graph.constant_value(value) {
+                Some(_) => name.to_owned(),
+                None => format!("{name} - ({})", remaining.system.graph.text(value)),
+            });
+        }
+    }
+    constant.extend(remaining.constants.iter().rev().map(|one| remaining.system.symbol_name(*one).to_owned()));
+    if !constant.is_empty() || !remaining.laws.is_empty() {
+        let _ = writeln!(out, "\n# the conditions stay met, and what is constant does not move");
+    }
+    if !constant.is_empty() {
+        let zeros = vec!["0"; constant.len()].join(", ");
+        for field in &fields {
+            let list = constant.join(", ");
+            let _ = writeln!(out, "claim constant.{field}: L({LARGER}.{field}, [{list}]) = [{zeros}]{fixed_place}");
+        }
+    }
+    for law in &remaining.laws {
+        for field in &fields {
+            let (name, sum) = (&law.name, &law.text);
+            let _ = writeln!(out, "claim {name}.{field}: L({LARGER}.{field}, {sum}) = 0{fixed_place}");
+        }
+    }
+    let _ = writeln!(out, "\n# the larger system moves so, and its outputs are the same");
+    let totals: Vec<Symbol> = remaining.laws.iter().map(|law| law.total).collect();
+    for field in &fields {
+        for state in remaining.states.iter().filter(|state| !totals.contains(state)) {
+            if remaining.is_declared_constant(*state) {
+                continue; // a constant is one in both
+            }
+            let name = remaining.system.symbol_name(*state);
+            let id = id(name);
+            let _ = writeln!(
+                out,
+                "claim {field}.{id}: L({field}, {name}) = L({LARGER}.{field}, {name}){whole_place}"
+            );
+        }
+    }
+    let mut texts = Vec::new();
+    for output in remaining.outputs.clone() {
+        let text = names.text(remaining, output.node, None);
+        if text.starts_with(TOO_LONG) {
+            return Err(NotReduced::TooLong { name: "an output".to_owned() });
+        }
+        texts.push(text);
+    }
+    let _ = writeln!(out, "claim output: {LARGER}.output = [{}]{whole_place}", texts.join("; "));
+    Ok(())
+}
+
+/// A name as a part of a claim's id.
+fn id(name: &str) -> String {
+    name.replace('[', ".").replace([']', '\''], "")
+}

@@ -1,0 +1,226 @@
+//! Least models of systems by hand: what is left out, and that all claims of the new files are proved.
+
+use palmistry_lang::System;
+use palmistry_prove::claim::prove;
+use palmistry_reduce::{LeastModel, NotReduced, ReduceQuestion, WhyLeftOut, reduce};
+use std::path::Path;
+
+fn question(conditions: &[&str], known: &[&str], undriven: &[&str]) -> ReduceQuestion {
+    let list = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+    ReduceQuestion { conditions: list(conditions), known: list(known), undriven: list(undriven) }
+}
+
+/// The least model of a text, read back, with all its claims proved.
+fn least(text: &str, asked: &ReduceQuestion) -> Result<(LeastModel, System), NotReduced> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("whole.proof"), text).unwrap();
+    let system = System::parse("whole.proof", text, folder.path()).unwrap();
+    let found = reduce(&system, asked, "whole.proof")?;
+    let small = System::parse("least.proof", &found.text, folder.path());
+    let small = small.unwrap_or_else(|error| panic!("{error}\n{}", found.text));
+    for outcome in prove(&small) {
+        assert!(outcome.ok, "{} {}: {}\n{}", outcome.word(), outcome.id, outcome.statement, found.text);
+    }
+    assert!(!small.claims.is_empty());
+    Ok((found, small))
+}
+
+fn names(found: &LeastModel) -> Vec<(&str, &str)> {
+    let word = |why: &WhyLeftOut| match why {
+        WhyLeftOut::Fixed(_) => "fixed",
+        WhyLeftOut::KnownConstant => "known",
+        WhyLeftOut::MeasuredConstant => "measured",
+        WhyLeftOut::NoOutputDependsOnIt => "dead",
+        WhyLeftOut::Conserved { .. } => "conserved",
+    };
+    found.left_out.iter().map(|one| (one.name.as_str(), word(&one.why))).collect()
+}
+
+const EPIDEMIC: &str = r#"
+system "An epidemic of which the ill are counted"
+state S, I, R
+param beta, gamma unknown
+drift f
+  S' = -beta*S*I
+  I' = beta*S*I - gamma*I
+  R' = gamma*I
+output I
+"#;
+
+/// No output depends on who has recovered; where they are counted too, one of the three is given by the others.
+#[test]
+fn states_that_no_output_needs_and_conservation_laws() {
+    let (found, small) = least(EPIDEMIC, &ReduceQuestion::default()).unwrap();
+    assert_eq!(names(&found), [("R", "dead")]);
+    assert_eq!((found.unknowns, found.moving), ([5, 4], [3, 2]));
+    assert_eq!(small.state_names(), ["S", "I", "beta", "gamma"]);
+    let counted = EPIDEMIC.replace("output I", "output I, R");
+    let (found, small) = least(&counted, &ReduceQuestion::default()).unwrap();
+    assert_eq!(names(&found), [("S", "conserved")]);
+    let WhyLeftOut::Conserved { law, total } = &found.left_out[0].why else { panic!() };
+    assert_eq!((law.as_str(), total.as_str()), ("I + R + S", "total"));
+    assert_eq!((found.unknowns, found.moving), ([5, 5], [3, 2]));
+    assert!(small.state_names().contains(&"total".to_owned()));
+}
+
+/// A known signal beside parameters of both kinds, definitions that are functions of it, an angle, and units.
+#[test]
+fn signals_parameters_angles_and_units_are_declared_again() {
+    let text = r#"
+        system "A cart with a pole"
+        state x : length, v : velocity, phi : angle, omega : 1/time
+        param M, m : mass unknown
+        param l : length unknown
+        param g : acceleration = 9.81
+        angle phi
+        known F(t) : force
+        let s = (F + m*l*omega^2*sin(phi))/(M + m)
+        let alpha = (g*sin(phi) - cos(phi)*s)/(l*(4/3 - m*cos(phi)^2/(M + m)))
+        assume M > 0, m > 0
+        drift f
+          x'     = v
+          v'     = s - m*l*alpha*cos(phi)/(M + m)
+          phi'   = omega
+          omega' = alpha
+        output phi
+        sample
+          phi in [-1, 1]
+          F   in [1, 2]
+          avoid cos(phi), v
+        "#;
+    let (found, small) = least(text, &question(&[], &["l"], &[])).unwrap();
+    assert_eq!(names(&found), [("x", "dead"), ("v", "dead"), ("l", "known")]);
+    assert!(found.text.contains("known F(t) : ") && found.text.contains("avoid cos(phi)\n"), "{}", found.text);
+    assert!(found.text.contains("let alpha = ") && found.text.contains("assume M > 0"), "{}", found.text);
+    assert!(small.is_angle(small.find_symbol("phi").unwrap()));
+    // without a force, and a level cart
+    let (found, _) = least(text, &question(&["F = 0", "g = 0"], &[], &[])).unwrap();
+    assert!(!found.text.contains("F(t)") && !found.text.contains("param g"), "{}", found.text);
+}
+
+/// Conditions that motion leaves, that are met in two ways, or under which nothing has a value.
+#[test]
+fn conditions_have_to_stay_met() {
+    let text = r#"
+        system "A pendulum on a cart that somebody drives"
+        state phi, omega, v
+        param k
+        angle phi
+        drift f
+          phi' = omega
+          omega' = -k*sin(phi) - v
+          v' = 0
+        input a
+          v' = 1
+          others' = 0
+        output phi
+        "#;
+    let why = |conditions: &[&str], undriven: &[&str]| {
+        least(text, &question(conditions, &[], undriven)).unwrap_err()
+    };
+    assert!(matches!(why(&["v = 0"], &[]), NotReduced::NotKept { field, rate, .. } if field == "input a" && rate == "1"));
+    assert!(matches!(why(&["omega = 0"], &[]), NotReduced::NotKept { field, .. } if field == "drift f"));
+    assert!(matches!(why(&["phi^2 = 1", "v = 0"], &["a"]), NotReduced::SeveralWays { .. } | NotReduced::Condition { .. }));
+    assert!(matches!(why(&["v > 0"], &["a"]), NotReduced::Condition { .. }));
+    assert!(matches!(why(&["w = 0"], &["a"]), NotReduced::Condition { .. }));
+    assert!(matches!(why(&[], &["b"]), NotReduced::NoInput { .. }));
+    let (found, _) = least(text, &question(&["v = 0"], &[], &["a"])).unwrap();
+    assert_eq!((names(&found), found.unknowns), (vec![("v", "fixed")], [3, 2]));
+    // at rest nothing is left that an output could tell
+    assert_eq!(why(&["omega = 0", "v = -k*sin(phi)"], &["a"]), NotReduced::Nothing);
+}
+
+/// A condition between states, and one that holds by itself.
+#[test]
+fn two_of_a_kind_are_one() {
+    let text = r#"
+        system "Two equal tanks that fill each other"
+        state x, y, z
+        param k unknown
+        drift f
+          x' = -k*(x - z)
+          y' = -k*(y - z)
+          z' = k*(x + y - 2*z)
+        output z + x - y
+        "#;
+    let (found, small) = least(text, &question(&["y = x"], &[], &[])).unwrap();
+    assert_eq!(small.state_names().len(), 3, "{}", found.text);
+    assert!(names(&found).contains(&("y", "fixed")) || names(&found).contains(&("x", "fixed")));
+    assert!(found.left_out.iter().any(|one| matches!(one.why, WhyLeftOut::Conserved { .. })), "{}", found.text);
+}
+
+/// What is known and moves becomes an output, and its rate tells what it told before.
+#[test]
+fn what_moves_and_is_known_is_an_output() {
+    let text = "system \"a\" state x, y drift f x' = y y' = -y output x";
+    let (found, small) = least(text, &question(&[], &["y"], &[])).unwrap();
+    assert_eq!((small.outputs.len(), small.state_names().len()), (2, 2));
+    assert!(found.remarks[0].contains("output"), "{:?}", found.remarks);
+    let why = least(text, &question(&[], &["z"], &[])).unwrap_err();
+    assert!(matches!(why, NotReduced::NoUnknown { .. }));
+    // a parameter that nothing tells
+    let text = "system \"a\" state x param k unknown drift f x' = 0 output x";
+    assert_eq!(least(text, &question(&[], &["k"], &[])).unwrap_err(), NotReduced::Nothing);
+    for (text, word) in [
+        ("system \"a\" state x drift f x+ = x output x", "discrete"),
+        ("system \"a\" state x experiments 2 drift f x' = 1 output x", "experiments"),
+        ("system \"a\" state x initial x known drift f x' = 1 output x", "initial"),
+    ] {
+        let why = least(text, &ReduceQuestion::default()).unwrap_err();
+        assert!(why.to_string().contains(word), "{why}");
+    }
+}
+
+/// Components of vectors, an output that is an equation, an unknown signal.
+#[test]
+fn vectors_equations_and_unknown_signals() {
+    let text = r#"
+        system "A chain whose end is pulled by nobody knows what"
+        state x[1..3], v[1..3], dead
+        unknown w(t) order 1
+        drift f
+          x[i]' = v[i] for i in 1..3
+          v[1]' = x[2] - x[1]
+          v[2]' = x[1] - 2*x[2] + x[3]
+          v[3]' = x[2] - x[3] + w
+          dead' = x[1]
+        output x[1], x[3]
+        "#;
+    let (found, small) = least(text, &ReduceQuestion::default()).unwrap();
+    assert_eq!(names(&found), [("dead", "dead")]);
+    assert!(small.state_names().contains(&"w".to_owned()), "{}", found.text);
+    let (found, _) = least(text, &question(&["w = 0"], &[], &[])).unwrap();
+    assert!(!found.text.contains("unknown w"), "{}", found.text);
+    let text = "system \"a\" state x, y param a unknown known u(t) drift f x' = u y' = x*y output x output 0 = a*x - u";
+    let (found, small) = least(text, &ReduceQuestion::default()).unwrap();
+    assert_eq!((names(&found), small.zero_outputs().len()), (vec![("y", "dead")], 1));
+}
+
+/// Each file of the benchmarks and each regime of the thesis as its author wrote it down by hand.
+#[test]
+fn the_thesis_s_regimes_are_found() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../proofs/moll2002");
+    let system = System::read(&folder.join("general.proof")).unwrap();
+    let import = folder.join("general.proof");
+    let at_rest = ["alpha1 = 0, alpha2 = 0"];
+    for (conditions, known, undriven, states, rank) in [
+        (&["omega1 = 0, omega2 = 0"][..], &["rho"][..], &[][..], &["r1", "r2", "omega0", "s1", "s2"][..], 5),
+        (&["omega1 = 0"], &["rho"], &[], &["r1", "r2", "omega0", "s1", "s2", "phi2"], 6),
+        (&["omega2 = 0"], &["omega1"], &["g1", "g2"], &["r1", "r2", "omega0", "s1", "s2", "phi1"], 6),
+        (&[], &["omega1", "omega2"], &["g1", "g2"], &["r1", "r2", "omega0", "s1", "s2", "phi1", "phi2"], 7),
+    ] {
+        let conditions = [&at_rest[..], conditions].concat();
+        let found = reduce(&system, &question(&conditions, known, undriven), import.to_str().unwrap()).unwrap();
+        let small = System::parse("least.proof", &found.text, Path::new("")).unwrap();
+        assert_eq!(small.state_names(), states, "{}", found.text);
+        for outcome in prove(&small) {
+            assert!(outcome.ok, "{} {}", outcome.id, outcome.statement);
+        }
+        let answer = palmistry_rank::observability::generic_answer(
+            &small,
+            &palmistry_lang::Assignment::new(),
+            palmistry_rank::observability::Ceiling::Rests,
+        );
+        assert_eq!(answer.rank(), Some(rank), "{}", found.text);
+    }
+}
