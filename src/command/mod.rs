@@ -29,6 +29,7 @@ mod observe_space;
 mod observe_stream;
 mod observe_studies;
 mod output;
+mod plan;
 mod poses;
 mod prove;
 mod rank;
@@ -95,6 +96,7 @@ enum Verb {
     Eval(eval::Eval),
     Observe(observe::Observe),
     Advise(advise::Advise),
+    Plan(plan::Plan),
     Poses(poses::Poses),
     Import(import::Import),
     New(new::New),
@@ -197,6 +199,7 @@ impl Verb {
             Verb::Eval(verb) => verb.json,
             Verb::Observe(verb) => verb.json,
             Verb::Advise(verb) => verb.json,
+            Verb::Plan(verb) => verb.json,
             Verb::Poses(verb) => verb.json,
             Verb::Import(verb) => verb.json,
             Verb::New(verb) => verb.json,
@@ -232,6 +235,7 @@ impl Verb {
             Verb::Eval(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Observe(verb) => verb.run(),
             Verb::Advise(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::Plan(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Poses(verb) => verb.run(),
             Verb::Import(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::New(verb) => verb.run(),

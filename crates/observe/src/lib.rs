@@ -85,7 +85,7 @@ pub use learned::{Arrival, Learned, Spread, Unseen};
 pub use loss::Loss;
 pub use model::{Model, ModelError};
 #[doc(hidden)]
-pub use model::{ModelQuestion, parameter_values};
+pub use model::{ModelQuestion, parameter_values, total_rates};
 pub use moving_window::{MovingWindow, WhenBlind, WindowSearch};
 pub use multiple_shooting::{MultipleShooting, Shooting};
 pub use newton::Newton;

@@ -286,6 +286,18 @@ pub(super) fn totals(
     Ok((rates, system.outputs.clone()))
 }
 
+/// The rates of some states along the drift and the driven input fields: `f + sum u_j g_j`, with a field and the symbol that drives it.
+///
+/// # Errors
+/// [`ModelError`]: no motion, no such field, no such symbol.
+pub fn total_rates(
+    system: &mut System,
+    states: &[Symbol],
+    inputs: &[(String, String)],
+) -> Result<Vec<NodeId>, ModelError> {
+    totals(system, states, inputs).map(|(rates, _)| rates)
+}
+
 /// The constants among the symbols: what is known, and the file's own values of parameters that no column gives.
 fn values_of(
     system: &mut System,

@@ -115,7 +115,12 @@ fn vectors(remaining: &Remaining, columns: &[usize], rng: &mut ChaCha8Rng) -> Op
         }
     }
     let basis = kernel(&field, rows, columns.len()).ok()?;
-    Some(basis.iter().filter_map(|vector| vector.iter().map(|value| fraction(&field, *value)).collect()).collect())
+    Some(
+        basis
+            .iter()
+            .filter_map(|vector| vector.iter().map(|value| fraction(&field, *value)).collect())
+            .collect(),
+    )
 }
 
 /// The small fraction that a residue stands for.

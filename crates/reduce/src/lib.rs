@@ -35,7 +35,7 @@ pub struct LeastModel {
     pub unknowns: [usize; 2],
     /// Those of them that move.
     pub moving: [usize; 2],
-    /// The operations that all rates and outputs take, in the larger system and in the smaller one.
+    /// The operations that all rates and outputs take, in the larger system (without inputs that nothing drives) and in the smaller one.
     pub operations: [usize; 2],
     /// What is worth knowing beside it, in sentences.
     pub remarks: Vec<String>,
@@ -47,10 +47,12 @@ pub struct LeastModel {
 /// [`NotReduced`]: a condition that cannot be solved or does not stay met, a name that the system does not have, or a kind of system that is not written anew.
 pub fn reduce(system: &System, question: &ReduceQuestion, import: &str) -> Result<LeastModel, NotReduced> {
     if import.chars().any(|c| c.is_control() || c == '"') {
-        return Err(NotReduced::Kind { why: "a path with quotation marks or line breaks cannot be named in a proof file".to_owned() });
+        return Err(NotReduced::Kind {
+            why: "a path with quotation marks or line breaks cannot be named in a proof file".to_owned(),
+        });
     }
     let mut remaining = Remaining::new(system, question)?;
-    let before = remaining.counts();
+    let (before, before_operations) = (remaining.counts(), operations(&remaining));
     remaining.put_in_conditions(question)?;
     remaining.take_constants_as_known(question)?;
     remaining.leave_out_what_no_output_needs();
@@ -63,7 +65,7 @@ pub fn reduce(system: &System, question: &ReduceQuestion, import: &str) -> Resul
         left_out: remaining.left_out.clone(),
         unknowns: [before.0, after.0],
         moving: [before.1, after.1],
-        operations: [operations(&Remaining::new(system, &ReduceQuestion::default())?), operations(&remaining)],
+        operations: [before_operations, operations(&remaining)],
         remarks: remaining.remarks.clone(),
     })
 }

@@ -1,15 +1,22 @@
 //! What is asked of a reduction, and why there is none.
 
+use dashu::rational::RBig;
+
 /// Which conditions hold, and what is known.
 #[derive(Clone, Debug, Default)]
 pub struct ReduceQuestion {
     /// Conditions in the language of proof files: `omega1 = 0`, `omega2 = omega1`. Each has to be solved for a state, a parameter or a signal in one way, and
     /// has to stay met along every field that is kept.
     pub conditions: Vec<String>,
-    /// States and unknown constants that somebody knows. A constant becomes a parameter; a state that moves becomes an output.
-    pub known: Vec<String>,
+    /// States and unknown constants that somebody knows, with their values where these are numbers. A constant becomes a parameter of that value; a state that moves
+    /// becomes an output; a parameter gets the value.
+    pub known: Vec<(String, Option<RBig>)>,
     /// Input fields that nothing drives.
     pub undriven: Vec<String>,
+    /// Input fields with the known signal or parameter that drives each: `f + u g` is the drift of the smaller system, and no input is left.
+    pub driven: Vec<(String, String)>,
+    /// Parameters that are known signals.
+    pub signals: Vec<String>,
 }
 
 /// Why a system is not written smaller.
@@ -37,6 +44,9 @@ pub enum NotReduced {
     /// A name that is no input.
     #[error("'{name}' is no input of the system; its inputs are {inputs}")]
     NoInput { name: String, inputs: String },
+    /// A name that is no parameter and no known signal.
+    #[error("'{name}' is no parameter and no known signal of the system")]
+    NoSignal { name: String },
     /// A formula that nobody would read.
     #[error("the rate of '{name}' is too long to be written")]
     TooLong { name: String },

@@ -2,8 +2,9 @@
 
 use super::laws::{Law, laws};
 use super::question::{NotReduced, ReduceQuestion};
-use palmistry_lang::{Assignment, Role, System, Time, UnknownKind, nearest};
-use palmistry_math::expression::{Derivation, NodeId, Symbol, ZeroTest, expand_angles, identically_zero};
+use dashu::rational::RBig;
+use palmistry_lang::{Assignment, Kind, Role, System, Time, UnknownKind, nearest};
+use palmistry_math::expression::{NodeId, Symbol, ZeroTest, expand_angles, identically_zero};
 use palmistry_rank::observability::{parse_condition, solve_conditions};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -48,22 +49,33 @@ pub(crate) struct RemainingOutput {
     pub is_kept: bool,
 }
 
+/// A field of the smaller system: a field of the larger one, or its drift with the inputs that something drives.
+#[derive(Clone, Debug)]
+pub(crate) struct Flow {
+    pub role: Role,
+    pub name: String,
+    /// Fields of the larger system by their places, each with the symbol that it is multiplied by.
+    pub terms: Vec<(Option<Symbol>, usize)>,
+}
+
 /// A system on its way to a smaller one.
 pub(crate) struct Remaining {
     pub system: System,
     /// States and unknown constants that are left; signals are none of them.
     pub states: Vec<Symbol>,
-    /// The places of the fields that are kept.
-    pub fields: Vec<usize>,
-    /// For each field that is kept the rates of `states`.
+    /// The fields that are kept.
+    pub flows: Vec<Flow>,
+    /// For each of them the rates of `states`.
     pub rates: Vec<Vec<NodeId>>,
     pub outputs: Vec<RemainingOutput>,
     /// States that move and are known: outputs that the larger system does not have.
     pub further_outputs: Vec<Symbol>,
     /// What the conditions give.
     pub values: Assignment,
-    /// Constants that have become parameters.
-    pub constants: Vec<Symbol>,
+    /// Constants that have become parameters, with their values where these are known.
+    pub constants: Vec<(Symbol, Option<RBig>)>,
+    /// Parameters of the larger system that are known signals.
+    pub signals: Vec<Symbol>,
     pub laws: Vec<Law>,
     pub left_out: Vec<LeftOutState>,
     pub remarks: Vec<String>,
@@ -85,32 +97,26 @@ impl Remaining {
         if system.states.iter().any(|state| system.symbol_name(*state).contains('@')) {
             return Err(kind("systems with several experiments are not reduced".to_owned()));
         }
+        if !system.initial_conditions().is_empty() {
+            return Err(kind("systems with initial values are not reduced".to_owned()));
+        }
         let signals: HashSet<Symbol> = system.signal_chains().into_iter().flatten().collect();
-        if system.known.iter().any(|state| !signals.contains(state)) {
-            return Err(kind("systems with known initial conditions are not reduced".to_owned()));
-        }
-        let inputs: Vec<&str> = system
-            .fields
-            .iter()
-            .filter(|field| field.role == Role::Input && !field.name.contains('\''))
-            .map(|field| field.name.as_str())
-            .collect();
-        if let Some(name) = question.undriven.iter().find(|name| !inputs.contains(&name.as_str())) {
-            return Err(NotReduced::NoInput { name: name.clone(), inputs: inputs.join(", ") });
-        }
-        // that a known signal may change is a field of its own, which no file writes
-        let is_written = |field: &usize| !system.fields[*field].name.contains('\'');
-        let kept = |field: &usize| {
-            is_written(field) && !question.undriven.contains(&system.fields[*field].name)
-        };
-        let fields: Vec<usize> = system.moving_fields().into_iter().filter(kept).collect();
+        let flows = flows(system, question)?;
         let mut system = system.clone();
         let states: Vec<Symbol> =
             system.states.iter().copied().filter(|state| !signals.contains(state)).collect();
-        let rates = fields
+        let rates = flows
             .iter()
-            .map(|field| states.iter().map(|state| component(&mut system, *field, *state)).collect())
+            .map(|flow| states.iter().map(|state| component(&mut system, flow, *state)).collect())
             .collect();
+        let signals =
+            question.signals.iter().map(|name| given(&system, name)).collect::<Result<Vec<_>, _>>()?;
+        let driving = flows.iter().flat_map(|flow| flow.terms.iter().filter_map(|(symbol, _)| *symbol));
+        let own_signals: HashSet<Symbol> = system.signal_chains().into_iter().flatten().collect();
+        let mut signals: Vec<Symbol> = signals.into_iter().chain(driving).collect();
+        signals.sort_unstable();
+        signals.dedup();
+        signals.retain(|symbol| !own_signals.contains(symbol));
         let zeros = system.zero_outputs();
         let outputs = system
             .outputs
@@ -120,12 +126,13 @@ impl Remaining {
         Ok(Remaining {
             all: states.clone(),
             states,
-            fields,
+            flows,
             rates,
             outputs,
             further_outputs: Vec::new(),
             values: Assignment::new(),
             constants: Vec::new(),
+            signals,
             laws: Vec::new(),
             left_out: Vec::new(),
             remarks: Vec::new(),
@@ -135,8 +142,9 @@ impl Remaining {
 
     /// How many unknowns there are, and how many of them move.
     pub fn counts(&self) -> (usize, usize) {
-        let moving = (0..self.states.len()).filter(|place| !self.is_constant(*place)).count();
-        (self.states.len(), moving)
+        let unknown =
+            || (0..self.states.len()).filter(|place| !self.system.known.contains(&self.states[*place]));
+        (unknown().count(), unknown().filter(|place| !self.is_constant(*place)).count())
     }
 
     /// The outputs that are measured.
@@ -157,9 +165,9 @@ impl Remaining {
 
     /// Whether an unknown has the rate zero along every field, as it is written.
     pub fn is_constant(&self, place: usize) -> bool {
-        self.rates.iter().all(|rates| {
-            self.system.graph.constant_value(rates[place]).is_some_and(|rate| rate.is_zero())
-        })
+        self.rates
+            .iter()
+            .all(|rates| self.system.graph.constant_value(rates[place]).is_some_and(|rate| rate.is_zero()))
     }
 
     /// Puts the conditions in, and sees that every field keeps them.
@@ -175,7 +183,9 @@ impl Remaining {
         // a signal that has a value for good has derivatives that are zero
         for chain in &chains {
             let is_number = |symbol: &Symbol| {
-                self.values.get(symbol).is_some_and(|value| self.system.graph.constant_value(*value).is_some())
+                self.values
+                    .get(symbol)
+                    .is_some_and(|value| self.system.graph.constant_value(*value).is_some())
             };
             if let Some(from) = chain.iter().position(is_number) {
                 for derivative in &chain[from + 1..] {
@@ -207,7 +217,8 @@ impl Remaining {
         let branches = solve_conditions(&mut self.system, &conditions)
             .map_err(|why| NotReduced::Condition { condition: all.clone(), why: why.to_string() })?;
         let [branch] = branches.as_slice() else {
-            let ways = branches.iter().map(|branch| branch.steps.join(", ")).collect::<Vec<_>>().join("; or ");
+            let ways =
+                branches.iter().map(|branch| branch.steps.join(", ")).collect::<Vec<_>>().join("; or ");
             if branches.is_empty() {
                 return Err(NotReduced::Condition { condition: all, why: "no state meets it".to_owned() });
             }
@@ -227,10 +238,10 @@ impl Remaining {
     /// That rates and outputs have values where the conditions hold.
     fn has_values(&mut self) -> Result<(), NotReduced> {
         let values = self.values.clone();
-        for (field, rates) in self.fields.iter().zip(&self.rates) {
+        for (flow, rates) in self.flows.iter().zip(&self.rates) {
             for (state, rate) in self.states.iter().zip(rates) {
                 if self.system.graph.vanishing_divisor(&[*rate], &values).is_some() {
-                    let (state, field) = (self.system.symbol_name(*state), &self.system.fields[*field].name);
+                    let (state, field) = (self.system.symbol_name(*state), &flow.name);
                     return Err(NotReduced::Pole { what: format!("the rate of '{state}' along {field}") });
                 }
             }
@@ -246,16 +257,28 @@ impl Remaining {
     /// That no field leads out of the conditions. Of a signal nothing has to be shown: that it has a value is what is said.
     fn stays_met(&mut self, signals: &[Symbol]) -> Result<(), NotReduced> {
         let mut rng = ChaCha8Rng::seed_from_u64(0x006b_6570_7400); // any fixed seed: the claims of the file are proved anew
-        let mut solved: Vec<(Symbol, NodeId)> = self.values.iter().map(|(symbol, value)| (*symbol, *value)).collect();
+        let mut solved: Vec<(Symbol, NodeId)> =
+            self.values.iter().map(|(symbol, value)| (*symbol, *value)).collect();
         solved.sort_unstable_by_key(|(symbol, _)| *symbol);
         let values = self.values.clone();
         for (symbol, value) in solved.iter().filter(|(symbol, _)| !signals.contains(symbol)) {
-            for field in self.fields.clone() {
-                let slopes = self.system.fields[field].components.iter().copied().collect();
-                let mut along = Derivation::new(slopes);
-                let own = component(&mut self.system, field, *symbol);
-                let of_value = along.apply(&mut self.system.graph, *value);
-                let difference = self.system.graph.sub(own, of_value);
+            let of_value = self.system.graph.symbols_of([*value]);
+            if let Some(signal) = of_value.iter().find(|symbol| self.signals.contains(symbol)) {
+                let condition =
+                    format!("{} = {}", self.system.symbol_name(*symbol), self.system.graph.text(*value));
+                let why = format!("'{}' is a signal, and changes", self.system.symbol_name(*signal));
+                return Err(NotReduced::Condition { condition, why });
+            }
+            for flow in self.flows.clone() {
+                let own = component(&mut self.system, &flow, *symbol);
+                let mut difference = own;
+                for state in self.system.graph.symbols_of([*value]) {
+                    // what has no rate of its own, a parameter, does not move
+                    let slope = self.system.partial(*value, state);
+                    let rate = component(&mut self.system, &flow, state);
+                    let term = self.system.graph.mul(slope, rate);
+                    difference = self.system.graph.sub(difference, term);
+                }
                 let there = self.system.graph.substitute(&[difference], &values)[0];
                 let is_angle = &self.system.angle_test();
                 let expanded = expand_angles(&mut self.system.graph, &[there], is_angle);
@@ -265,8 +288,12 @@ impl Remaining {
                 ) {
                     let condition =
                         format!("{} = {}", self.system.symbol_name(*symbol), self.system.graph.text(*value));
-                    let field = format!("{} {}", self.system.fields[field].role.name(), self.system.fields[field].name);
-                    return Err(NotReduced::NotKept { condition, field, rate: self.system.graph.text(there) });
+                    let field = format!("{} {}", flow.role.name(), flow.name);
+                    return Err(NotReduced::NotKept {
+                        condition,
+                        field,
+                        rate: self.system.graph.text(there),
+                    });
                 }
             }
         }
@@ -278,7 +305,14 @@ impl Remaining {
     /// # Errors
     /// A name that is no unknown.
     pub fn take_constants_as_known(&mut self, question: &ReduceQuestion) -> Result<(), NotReduced> {
-        for name in &question.known {
+        for (name, value) in &question.known {
+            if let (Ok(parameter), Some(value)) = (given(&self.system, name), value) {
+                // it was known before, and has a value now
+                if let Some(info) = self.system.symbols.get_mut(&parameter) {
+                    info.default = Some(value.clone());
+                }
+                continue;
+            }
             let symbol = self.system.find_symbol(name).filter(|symbol| self.all.contains(symbol));
             let Some(symbol) = symbol else {
                 let names: Vec<&str> = self.all.iter().map(|one| self.system.symbol_name(*one)).collect();
@@ -290,7 +324,7 @@ impl Remaining {
                 continue; // the conditions give it
             };
             if self.is_constant(place) {
-                self.constants.push(symbol);
+                self.constants.push((symbol, value.clone()));
                 self.leave_out(place, WhyLeftOut::KnownConstant);
             } else if !self.is_measured(symbol) {
                 self.further_outputs.push(symbol);
@@ -299,8 +333,12 @@ impl Remaining {
         }
         for place in (0..self.states.len()).rev() {
             let symbol = self.states[place];
-            if self.is_measured(symbol) && self.is_constant(place) {
-                self.constants.push(symbol);
+            if self.is_constant(place) && self.system.known.contains(&symbol) {
+                // known at the beginning, and for good
+                self.constants.push((symbol, None));
+                self.leave_out(place, WhyLeftOut::KnownConstant);
+            } else if self.is_measured(symbol) && self.is_constant(place) {
+                self.constants.push((symbol, None));
                 self.leave_out(place, WhyLeftOut::MeasuredConstant);
             }
         }
@@ -322,6 +360,7 @@ impl Remaining {
     /// What is not known: states, unknown constants, unknown signals.
     fn unknown_symbols(&self) -> HashSet<Symbol> {
         let signals = self.system.signal_chains().into_iter().flatten();
+        // a state that is known at the beginning moves as others do
         let unknown = signals.filter(|symbol| !self.system.known.contains(symbol));
         self.states.iter().copied().chain(unknown).collect()
     }
@@ -351,6 +390,9 @@ impl Remaining {
 
     /// Takes the last state of each conservation law that is no output by the others, and the conserved amount as an unknown constant in its place.
     pub fn use_conservation_laws(&mut self) {
+        if self.states.iter().any(|state| self.system.known.contains(state)) {
+            return; // of an amount that is partly known at the beginning something is known
+        }
         for law in laws(self) {
             let mut values = Assignment::new();
             let given = law.given(&mut self.system.graph);
@@ -396,8 +438,72 @@ impl Remaining {
     }
 }
 
+/// The fields that are kept: each input by itself, or all that is driven in the drift.
+fn flows(system: &System, question: &ReduceQuestion) -> Result<Vec<Flow>, NotReduced> {
+    // that a known signal may change is a field of its own, which no file writes
+    let moving: Vec<usize> = system
+        .moving_fields()
+        .into_iter()
+        .filter(|field| !system.fields[*field].name.contains('\''))
+        .collect();
+    let inputs: Vec<&str> = moving
+        .iter()
+        .filter(|field| system.fields[**field].role == Role::Input)
+        .map(|field| system.fields[*field].name.as_str())
+        .collect();
+    let named = question.undriven.iter().chain(question.driven.iter().map(|(field, _)| field));
+    if let Some(name) = named.into_iter().find(|name| !inputs.contains(&name.as_str())) {
+        return Err(NotReduced::NoInput { name: name.clone(), inputs: inputs.join(", ") });
+    }
+    let mut flows = Vec::new();
+    for field in moving {
+        let of = &system.fields[field];
+        let is_driven = |(name, _): &&(String, String)| *name == of.name;
+        if question.undriven.contains(&of.name) || question.driven.iter().any(|one| is_driven(&one)) {
+            continue;
+        }
+        flows.push(Flow { role: of.role, name: of.name.clone(), terms: vec![(None, field)] });
+    }
+    if !question.driven.is_empty() {
+        if !flows.iter().any(|flow| flow.role == Role::Drift) {
+            let name =
+                ["f", "drift", "motion"].into_iter().find(|name| !inputs.contains(name)).unwrap_or("f0");
+            flows.insert(0, Flow { role: Role::Drift, name: name.to_owned(), terms: Vec::new() });
+        }
+        for (name, by) in &question.driven {
+            let symbol = given(system, by)?;
+            let place = system.fields.iter().position(|field| field.name == *name);
+            if let (Some(place), Some(drift)) =
+                (place, flows.iter_mut().find(|flow| flow.role == Role::Drift))
+            {
+                drift.terms.push((Some(symbol), place));
+            }
+        }
+    }
+    Ok(flows)
+}
+
+/// A parameter or a known signal.
+fn given(system: &System, name: &str) -> Result<Symbol, NotReduced> {
+    let is_given = |symbol: &Symbol| {
+        system.known.contains(symbol)
+            || system.symbol_info(*symbol).is_some_and(|info| info.kind == Kind::Parameter)
+                && system.unknown_kind(*symbol).is_none()
+    };
+    system.find_symbol(name).filter(is_given).ok_or_else(|| NotReduced::NoSignal { name: name.to_owned() })
+}
+
 /// What a field does to a symbol.
-fn component(system: &mut System, field: usize, symbol: Symbol) -> NodeId {
-    let found = system.fields[field].components.iter().find(|(other, _)| *other == symbol);
-    found.map(|(_, node)| *node).unwrap_or_else(|| system.graph.integer(0))
+fn component(system: &mut System, flow: &Flow, symbol: Symbol) -> NodeId {
+    let mut rate = system.graph.integer(0);
+    for (by, field) in &flow.terms {
+        let found = system.fields[*field].components.iter().find(|(other, _)| *other == symbol);
+        let Some((_, mut moved)) = found.copied() else { continue };
+        if let Some(by) = by {
+            let by = system.graph.symbol(*by);
+            moved = system.graph.mul(by, moved);
+        }
+        rate = system.graph.add(rate, moved);
+    }
+    rate
 }

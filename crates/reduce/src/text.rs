@@ -1,7 +1,7 @@
 //! The smaller system as a proof file.
 
 use super::question::NotReduced;
-use super::remaining::{LeftOutState, Remaining, WhyLeftOut};
+use super::remaining::{Flow, LeftOutState, Remaining, WhyLeftOut};
 use palmistry_lang::{Kind, Value};
 use palmistry_math::expression::{Node, NodeId, Symbol};
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -63,8 +63,14 @@ impl Names {
         };
         let formulas: Vec<NodeId> =
             remaining.rates.iter().flatten().copied().chain(remaining.output_nodes()).collect();
-        let order: HashMap<NodeId, usize> =
-            remaining.system.graph.reachable(formulas).into_iter().enumerate().map(|(at, id)| (id, at)).collect();
+        let order: HashMap<NodeId, usize> = remaining
+            .system
+            .graph
+            .reachable(formulas)
+            .into_iter()
+            .enumerate()
+            .map(|(at, id)| (id, at))
+            .collect();
         let mut taken = HashSet::new();
         let mut definitions: Vec<(usize, Definition)> = Vec::new();
         for ((name, _), node) in numbers.into_iter().zip(images) {
@@ -83,7 +89,56 @@ impl Names {
             }
         }
         definitions.sort_by_key(|(at, _)| *at);
-        Names { definitions: definitions.into_iter().map(|(_, definition)| definition).collect() }
+        let mut names =
+            Names { definitions: definitions.into_iter().map(|(_, definition)| definition).collect() };
+        let formulas: Vec<NodeId> =
+            remaining.rates.iter().flatten().copied().chain(remaining.output_nodes()).collect();
+        if formulas.iter().any(|formula| names.text(remaining, *formula, None).starts_with(TOO_LONG)) {
+            names.define_parts(remaining, &formulas, &order);
+        }
+        names
+    }
+
+    /// Defines what formulas that are too long have in common.
+    fn define_parts(&mut self, remaining: &Remaining, formulas: &[NodeId], order: &HashMap<NodeId, usize>) {
+        let graph = &remaining.system.graph;
+        let defined: HashSet<NodeId> = self.definitions.iter().map(|definition| definition.node).collect();
+        // how often each is used, and how long it is beside what has a name
+        let mut uses: HashMap<NodeId, usize> = HashMap::new();
+        let mut lengths: HashMap<NodeId, usize> = HashMap::new();
+        let mut parts = Vec::new();
+        let all = graph.reachable(formulas.iter().copied());
+        for id in &all {
+            for operand in graph.node(*id).operands() {
+                *uses.entry(operand).or_default() += 1;
+            }
+        }
+        for id in all {
+            let node = graph.node(id);
+            let mut length: usize = 1 + node.operands().map(|operand| lengths[&operand]).sum::<usize>();
+            let is_shared = uses.get(&id).is_some_and(|count| *count > 1);
+            if defined.contains(&id) || is_shared && length > SHORT || length > LONG {
+                if !defined.contains(&id) {
+                    parts.push(id);
+                }
+                length = 1;
+            }
+            lengths.insert(id, length);
+        }
+        let is_taken =
+            |name: &str| graph.find_symbol(name).is_some() || remaining.system.definition(name).is_some();
+        let mut number = 0;
+        for node in parts {
+            let name = loop {
+                number += 1;
+                let name = format!("part{number}");
+                if !is_taken(&name) {
+                    break name;
+                }
+            };
+            self.definitions.push(Definition { name, node });
+        }
+        self.definitions.sort_by_key(|definition| order.get(&definition.node).copied());
     }
 
     /// A formula, with definitions by their names but for the one that is being defined.
@@ -109,9 +164,15 @@ impl Names {
             };
             image.insert(id, new);
         }
-        graph.text(image[&node])
+        // a sum with a negative number is a difference
+        graph.text(image[&node]).replace(" + -", " - ")
     }
 }
+
+/// What is used more than once and has more operations than this is a part with a name of its own, where formulas are too long without.
+const SHORT: usize = 8;
+/// Formulas of more operations are cut.
+const LONG: usize = 150;
 
 /// What is printed of a formula that is too long begins so.
 const TOO_LONG: &str = "(an expression";
@@ -175,21 +236,27 @@ fn one_line(text: &str) -> String {
 
 /// A name, and its dimension where the file declares some.
 fn declared(remaining: &Remaining, symbol: Symbol) -> String {
-    let name = remaining.system.symbol_name(symbol);
+    declared_as(remaining, symbol, "")
+}
+
+/// The same with something behind the name.
+fn declared_as(remaining: &Remaining, symbol: Symbol, behind: &str) -> String {
+    let name = format!("{}{behind}", remaining.system.symbol_name(symbol));
     let dimension = match remaining.system.declares_dimensions() {
         true => remaining.system.dimension_of(symbol),
         false => None,
     };
     match dimension {
-        Some(dimension) if dimension.is_none() && remaining.system.is_angle(symbol) => format!("{name} : angle"),
+        Some(dimension) if dimension.is_none() && remaining.system.is_angle(symbol) => {
+            format!("{name} : angle")
+        }
         Some(dimension) => format!("{name} : {dimension}"),
-        None => name.to_owned(),
+        None => name,
     }
 }
 
 fn declarations(out: &mut String, remaining: &Remaining) {
-    let totals: HashMap<Symbol, Symbol> =
-        remaining.laws.iter().map(|law| (law.total, law.state)).collect();
+    let totals: HashMap<Symbol, Symbol> = remaining.laws.iter().map(|law| (law.total, law.state)).collect();
     let of = |symbol: &Symbol| match totals.get(symbol) {
         // a sum with rational factors has the dimension of its terms
         Some(state) => {
@@ -224,26 +291,39 @@ fn declarations(out: &mut String, remaining: &Remaining) {
     let mentioned = mentioned(remaining);
     for (symbol, info) in remaining.system.symbols() {
         let is_parameter = info.kind == Kind::Parameter && mentioned.contains(&symbol);
-        let is_declared = remaining.states.contains(&symbol);
+        let is_declared = remaining.states.contains(&symbol) || remaining.signals.contains(&symbol);
+        let constant = remaining.constants.iter().find(|(constant, _)| *constant == symbol);
         if (is_parameter && !is_declared && remaining.system.derivative_of_signal(symbol).is_none())
-            || remaining.constants.contains(&symbol)
+            || constant.is_some()
         {
-            let value = info.default.as_ref().map(|value| format!(" = {value}")).unwrap_or_default();
+            let value = constant.and_then(|(_, value)| value.as_ref()).or(info.default.as_ref());
+            let value = value.map(|value| format!(" = {value}")).unwrap_or_default();
             let _ = writeln!(out, "param {}{value}", declared(remaining, symbol));
         }
+    }
+    for symbol in remaining.signals.iter().filter(|symbol| mentioned.contains(symbol)) {
+        let _ = writeln!(out, "known {}", declared_as(remaining, *symbol, "(t)"));
     }
     for chain in remaining.system.signal_chains() {
         let Some(first) = chain.first() else { continue };
         if !chain.iter().any(|symbol| mentioned.contains(symbol)) {
             continue;
         }
-        let name = remaining.system.symbol_name(*first);
-        let whole = declared(remaining, *first).replacen(name, &format!("{name}(t)"), 1);
+        let whole = declared_as(remaining, *first, "(t)");
         if remaining.system.known.contains(first) {
             let _ = writeln!(out, "known {whole}");
         } else {
             let _ = writeln!(out, "unknown {whole} order {}", chain.len() - 1);
         }
+    }
+    let at_first: Vec<&str> = remaining
+        .states
+        .iter()
+        .filter(|state| remaining.system.known.contains(state))
+        .map(|state| remaining.system.symbol_name(*state))
+        .collect();
+    if !at_first.is_empty() {
+        let _ = writeln!(out, "initial {} known", at_first.join(", "));
     }
     let angles: Vec<&str> = remaining
         .system
@@ -282,15 +362,18 @@ fn names_in(text: &str) -> impl Iterator<Item = &str> {
 /// The symbols of all formulas of the smaller system, and the constants that have become parameters.
 fn mentioned(remaining: &Remaining) -> BTreeSet<Symbol> {
     let formulas = remaining.rates.iter().flatten().copied().chain(remaining.output_nodes());
-    remaining.system.graph.symbols_of(formulas).into_iter().chain(remaining.constants.iter().copied()).collect()
+    remaining
+        .system
+        .graph
+        .symbols_of(formulas)
+        .into_iter()
+        .chain(remaining.constants.iter().map(|(constant, _)| *constant))
+        .collect()
 }
 
 fn fields(out: &mut String, remaining: &mut Remaining, names: &Names) -> Result<(), NotReduced> {
-    for (place, field) in remaining.fields.clone().into_iter().enumerate() {
-        let (role, name) = {
-            let field = &remaining.system.fields[field];
-            (field.role.name(), field.name.clone())
-        };
+    for (place, flow) in remaining.flows.clone().into_iter().enumerate() {
+        let (role, name) = (flow.role.name(), flow.name);
         let _ = writeln!(out, "\n{role} {name}");
         let mut rests = false;
         let totals: Vec<Symbol> = remaining.laws.iter().map(|law| law.total).collect();
@@ -369,7 +452,8 @@ fn sample(out: &mut String, remaining: &mut Remaining, names: &Names) {
             _ => there,
         };
         let symbols = remaining.system.graph.symbols_of([there]);
-        let is_there = symbols.iter().all(|symbol| mentioned.contains(symbol) || remaining.states.contains(symbol));
+        let is_there =
+            symbols.iter().all(|symbol| mentioned.contains(symbol) || remaining.states.contains(symbol));
         let text = names.text(remaining, there, None);
         if is_there && !symbols.is_empty() && !text.starts_with(TOO_LONG) && !avoided.contains(&text) {
             avoided.push(text);
@@ -396,8 +480,15 @@ fn claims(out: &mut String, remaining: &mut Remaining, names: &Names) -> Result<
         all.push(format!("{} = {value}", remaining.system.symbol_name(law.state)));
     }
     let (fixed_place, whole_place) = (place(&solved), place(&all));
-    let fields: Vec<String> =
-        remaining.fields.iter().map(|field| remaining.system.fields[*field].name.clone()).collect();
+    let along = |remaining: &Remaining, flow: &Flow, what: &str| {
+        let term = |(by, field): &(Option<Symbol>, usize)| {
+            let by = by.map(|by| format!("{}*", remaining.system.symbol_name(by))).unwrap_or_default();
+            format!("{by}L({LARGER}.{}, {what})", remaining.system.fields[*field].name)
+        };
+        let terms: Vec<String> = flow.terms.iter().map(term).collect();
+        terms.join(" + ")
+    };
+    let flows = remaining.flows.clone();
     let mut constant = Vec::new();
     let mut values: Vec<(Symbol, NodeId)> =
         remaining.values.iter().map(|(symbol, value)| (*symbol, *value)).collect();
@@ -414,36 +505,38 @@ fn claims(out: &mut String, remaining: &mut Remaining, names: &Names) -> Result<
             });
         }
     }
-    constant.extend(remaining.constants.iter().rev().map(|one| remaining.system.symbol_name(*one).to_owned()));
+    constant.extend(
+        remaining.constants.iter().rev().map(|(one, _)| remaining.system.symbol_name(*one).to_owned()),
+    );
     if !constant.is_empty() || !remaining.laws.is_empty() {
         let _ = writeln!(out, "\n# the conditions stay met, and what is constant does not move");
     }
     if !constant.is_empty() {
         let zeros = vec!["0"; constant.len()].join(", ");
-        for field in &fields {
-            let list = constant.join(", ");
-            let _ = writeln!(out, "claim constant.{field}: L({LARGER}.{field}, [{list}]) = [{zeros}]{fixed_place}");
+        let list = format!("[{}]", constant.join(", "));
+        for flow in &flows {
+            let rates = along(remaining, flow, &list);
+            let _ = writeln!(out, "claim constant.{}: {rates} = [{zeros}]{fixed_place}", flow.name);
         }
     }
     for law in &remaining.laws {
-        for field in &fields {
-            let (name, sum) = (&law.name, &law.text);
-            let _ = writeln!(out, "claim {name}.{field}: L({LARGER}.{field}, {sum}) = 0{fixed_place}");
+        for flow in &flows {
+            let rate = along(remaining, flow, &law.text);
+            let _ = writeln!(out, "claim {}.{}: {rate} = 0{fixed_place}", law.name, flow.name);
         }
     }
     let _ = writeln!(out, "\n# the larger system moves so, and its outputs are the same");
     let totals: Vec<Symbol> = remaining.laws.iter().map(|law| law.total).collect();
-    for field in &fields {
+    for flow in &flows {
+        let field = &flow.name;
         for state in remaining.states.iter().filter(|state| !totals.contains(state)) {
             if remaining.is_declared_constant(*state) {
                 continue; // a constant is one in both
             }
             let name = remaining.system.symbol_name(*state);
             let id = id(name);
-            let _ = writeln!(
-                out,
-                "claim {field}.{id}: L({field}, {name}) = L({LARGER}.{field}, {name}){whole_place}"
-            );
+            let rate = along(remaining, flow, name);
+            let _ = writeln!(out, "claim {field}.{id}: L({field}, {name}) = {rate}{whole_place}");
         }
     }
     let mut texts = Vec::new();

@@ -6,8 +6,13 @@ use palmistry_reduce::{LeastModel, NotReduced, ReduceQuestion, WhyLeftOut, reduc
 use std::path::Path;
 
 fn question(conditions: &[&str], known: &[&str], undriven: &[&str]) -> ReduceQuestion {
-    let list = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
-    ReduceQuestion { conditions: list(conditions), known: list(known), undriven: list(undriven) }
+    let list = |names: &[&str]| -> Vec<String> { names.iter().map(|name| (*name).to_owned()).collect() };
+    ReduceQuestion {
+        conditions: list(conditions),
+        known: list(known).into_iter().map(|name| (name, None)).collect(),
+        undriven: list(undriven),
+        ..ReduceQuestion::default()
+    }
 }
 
 /// The least model of a text, read back, with all its claims proved.
@@ -90,7 +95,11 @@ fn signals_parameters_angles_and_units_are_declared_again() {
         "#;
     let (found, small) = least(text, &question(&[], &["l"], &[])).unwrap();
     assert_eq!(names(&found), [("x", "dead"), ("v", "dead"), ("l", "known")]);
-    assert!(found.text.contains("known F(t) : ") && found.text.contains("avoid cos(phi)\n"), "{}", found.text);
+    assert!(
+        found.text.contains("known F(t) : ") && found.text.contains("avoid cos(phi)\n"),
+        "{}",
+        found.text
+    );
     assert!(found.text.contains("let alpha = ") && found.text.contains("assume M > 0"), "{}", found.text);
     assert!(small.is_angle(small.find_symbol("phi").unwrap()));
     // without a force, and a level cart
@@ -118,9 +127,14 @@ fn conditions_have_to_stay_met() {
     let why = |conditions: &[&str], undriven: &[&str]| {
         least(text, &question(conditions, &[], undriven)).unwrap_err()
     };
-    assert!(matches!(why(&["v = 0"], &[]), NotReduced::NotKept { field, rate, .. } if field == "input a" && rate == "1"));
+    assert!(
+        matches!(why(&["v = 0"], &[]), NotReduced::NotKept { field, rate, .. } if field == "input a" && rate == "1")
+    );
     assert!(matches!(why(&["omega = 0"], &[]), NotReduced::NotKept { field, .. } if field == "drift f"));
-    assert!(matches!(why(&["phi^2 = 1", "v = 0"], &["a"]), NotReduced::SeveralWays { .. } | NotReduced::Condition { .. }));
+    assert!(matches!(
+        why(&["phi^2 = 1", "v = 0"], &["a"]),
+        NotReduced::SeveralWays { .. } | NotReduced::Condition { .. }
+    ));
     assert!(matches!(why(&["v > 0"], &["a"]), NotReduced::Condition { .. }));
     assert!(matches!(why(&["w = 0"], &["a"]), NotReduced::Condition { .. }));
     assert!(matches!(why(&[], &["b"]), NotReduced::NoInput { .. }));
@@ -146,7 +160,11 @@ fn two_of_a_kind_are_one() {
     let (found, small) = least(text, &question(&["y = x"], &[], &[])).unwrap();
     assert_eq!(small.state_names().len(), 3, "{}", found.text);
     assert!(names(&found).contains(&("y", "fixed")) || names(&found).contains(&("x", "fixed")));
-    assert!(found.left_out.iter().any(|one| matches!(one.why, WhyLeftOut::Conserved { .. })), "{}", found.text);
+    assert!(
+        found.left_out.iter().any(|one| matches!(one.why, WhyLeftOut::Conserved { .. })),
+        "{}",
+        found.text
+    );
 }
 
 /// What is known and moves becomes an output, and its rate tells what it told before.
@@ -164,11 +182,32 @@ fn what_moves_and_is_known_is_an_output() {
     for (text, word) in [
         ("system \"a\" state x drift f x+ = x output x", "discrete"),
         ("system \"a\" state x experiments 2 drift f x' = 1 output x", "experiments"),
-        ("system \"a\" state x initial x known drift f x' = 1 output x", "initial"),
+        ("system \"a\" state x initial x = 0 drift f x' = 1 output x", "initial"),
     ] {
         let why = least(text, &ReduceQuestion::default()).unwrap_err();
         assert!(why.to_string().contains(word), "{why}");
     }
+}
+
+/// A state that is known at the beginning is no unknown, and stays one that moves.
+#[test]
+fn known_initial_conditions_are_declared_again() {
+    let text = "system \"a\" state x, y, z param k unknown initial x, z known drift f x' = k*x y' = x z' = 0 output x + y + z";
+    let (found, small) = least(text, &ReduceQuestion::default()).unwrap();
+    assert_eq!((names(&found), found.unknowns), (vec![("z", "known")], [2, 2]), "{}", found.text);
+    assert!(found.text.contains("initial x known\n") && small.unknown_count() == 2, "{}", found.text);
+}
+
+/// Formulas that are too long in one piece are written in parts.
+#[test]
+fn long_formulas_are_written_in_parts() {
+    let mut sum = "sin(x)*y + cos(x)*z".to_owned();
+    for _ in 0..9 {
+        sum = format!("(({sum})^2 + x*({sum}))");
+    }
+    let text = format!("system \"a\" state x, y, z drift f x' = y y' = z z' = {sum} output x");
+    let (found, _) = least(&text, &ReduceQuestion::default()).unwrap();
+    assert!(found.text.contains("let part2 = "), "{}", found.text);
 }
 
 /// Components of vectors, an output that is an equation, an unknown signal.
@@ -196,6 +235,50 @@ fn vectors_equations_and_unknown_signals() {
     assert_eq!((names(&found), small.zero_outputs().len()), (vec![("y", "dead")], 1));
 }
 
+/// What drives an input is a known signal, or has a value: then no input is left, and the claims hold both sides to the torques.
+#[test]
+fn driven_inputs_are_in_the_drift() {
+    let text = r#"
+        system "A cart that a motor drives"
+        state x : length, v : velocity
+        param u : force
+        param m : mass = 2
+        param b : force*time/length unknown
+        drift f
+          x' = v
+          v' = -b*v/m
+        input g
+          v' = 1/m
+          others' = 0
+        output x
+        "#;
+    let driven = |conditions: &[&str], known: &[&str]| ReduceQuestion {
+        driven: vec![("g".to_owned(), "u".to_owned())],
+        ..question(conditions, known, &[])
+    };
+    let (found, small) = least(text, &driven(&[], &[])).unwrap();
+    assert!(found.text.contains("known u(t) : ") && !found.text.contains("input"), "{}", found.text);
+    assert!(found.text.contains("L(larger.f, v) + u*L(larger.g, v)"), "{}", found.text);
+    assert_eq!((small.fields.len(), found.unknowns), (2, [3, 3]), "the drift, and that u may change");
+    let (found, _) = least(text, &driven(&["u = 0"], &[])).unwrap();
+    assert!(!found.text.contains("known u"), "{}", found.text);
+    let asked = ReduceQuestion { signals: vec!["m".to_owned()], ..driven(&["u = 0"], &[]) };
+    let (found, _) = least(text, &asked).unwrap();
+    assert!(found.text.contains("known m(t) : mass"), "{}", found.text);
+    let value = "1/2".parse().unwrap();
+    let asked = ReduceQuestion { known: vec![("b".to_owned(), Some(value))], ..driven(&[], &[]) };
+    let (found, _) = least(text, &asked).unwrap();
+    assert!(found.text.contains("param b : ") && found.text.contains(" = 1/2\n"), "{}", found.text);
+    for (driven, word) in [(("h", "u"), "input"), (("g", "w"), "signal"), (("g", "x"), "signal")] {
+        let asked = ReduceQuestion {
+            driven: vec![(driven.0.to_owned(), driven.1.to_owned())],
+            ..ReduceQuestion::default()
+        };
+        let why = least(text, &asked).unwrap_err().to_string();
+        assert!(why.contains(word), "{why}");
+    }
+}
+
 /// Each file of the benchmarks and each regime of the thesis as its author wrote it down by hand.
 #[test]
 fn the_thesis_s_regimes_are_found() {
@@ -210,7 +293,8 @@ fn the_thesis_s_regimes_are_found() {
         (&[], &["omega1", "omega2"], &["g1", "g2"], &["r1", "r2", "omega0", "s1", "s2", "phi1", "phi2"], 7),
     ] {
         let conditions = [&at_rest[..], conditions].concat();
-        let found = reduce(&system, &question(&conditions, known, undriven), import.to_str().unwrap()).unwrap();
+        let found =
+            reduce(&system, &question(&conditions, known, undriven), import.to_str().unwrap()).unwrap();
         let small = System::parse("least.proof", &found.text, Path::new("")).unwrap();
         assert_eq!(small.state_names(), states, "{}", found.text);
         for outcome in prove(&small) {

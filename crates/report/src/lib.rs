@@ -15,6 +15,7 @@ mod formula;
 mod inline_hash;
 mod joint;
 mod layout;
+mod least;
 mod motion;
 mod moved_body;
 mod names;
@@ -59,6 +60,8 @@ pub use joint::{JointObserved, joint_json, joint_page, joint_parameters, joint_s
 #[doc(hidden)]
 pub use layout::Colour;
 pub use layout::Layout;
+#[doc(hidden)]
+pub use least::{least_json, least_text, plan_json, plan_text};
 pub use motion::{Observed, modes_json, modes_text, observe_json, observe_page, observe_text};
 #[doc(hidden)]
 pub use motion::{stream_end_json, stream_end_text, stream_json, stream_text};

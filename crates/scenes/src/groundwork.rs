@@ -2,8 +2,9 @@
 
 use super::channels;
 use super::known_motion::KnownMotion;
+use super::least;
 use super::scene::{Guess, Scene, SceneError};
-use super::simulation::{Simulation, TOUCH, body, constants};
+use super::simulation::{Simulation, body, constants};
 use super::system_motion::SystemMotion;
 use super::unguided::Unguided;
 use palmistry_lang::{Kind, System, nearest};
@@ -221,16 +222,9 @@ pub(super) fn estimate_question(
     steady: Steady,
 ) -> Result<EstimateQuestion, SceneError> {
     let settings = &scene.observer;
-    // a signal that never changes is a constant: the model then has only what the regime asks for
-    for (place, name) in signals.names().iter().enumerate() {
-        let column = signals.column(place);
-        let steady = steady == Steady::AreConstants && column.iter().all(|value| *value == column[0]);
-        let met = system.find_symbol(name).is_some();
-        let is_output = system.outputs.iter().any(|(output, _)| output == name);
-        if met && steady && !is_output && !TOUCH.contains(&name.as_str()) && !settings.estimate.contains(name)
-        {
-            known.entry(name.clone()).or_insert(column[0]);
-        }
+    // a column that never changes is a constant: the model then has only what the regime asks for
+    if steady == Steady::AreConstants {
+        known.extend(least::constants(scene, system, &known, signals));
     }
     let unguided = match settings.guess {
         Guess::None => Unguided::of(scene, system, &known, signals)?,

@@ -16,11 +16,13 @@ mod groundwork;
 #[doc(hidden)]
 pub mod joint;
 mod known_motion;
+mod least;
 mod mirrored;
 mod modes;
 mod motion_rank;
 mod not_told;
 mod past_poles;
+mod plan;
 mod recognised;
 mod reconstruction;
 mod recovered;
@@ -48,6 +50,7 @@ pub use known_motion::KnownMotion;
 pub use modes::{ModeEstimate, ModeWindow};
 #[doc(hidden)]
 pub use past_poles::EQUATIONS;
+pub use plan::{PlanConstant, PlanRank, ScenePlan, SteadyStretch};
 pub use recognised::{LibraryAnswer, Recognition, RecognitionVerdict};
 #[doc(hidden)]
 pub use reconstruction::{on_palm, shown, turned};

@@ -18,6 +18,12 @@ use std::collections::{HashMap, HashSet};
 /// Outputs are differentiated no more often than this.
 const MOST: usize = 3;
 
+/// The same where it is asked once: beside columns that drive the model, and without. Of a polynomial of degree [`DEGREE`] no more derivatives are known.
+const MOST_ONCE: [usize; 2] = [DEGREE, 10];
+
+/// Derivatives of more parts than this are not taken: they grow with each.
+const MOST_PARTS: usize = 200_000;
+
 /// Derivatives of what is read are those of a polynomial of this degree through so many samples to either side.
 const DEGREE: usize = 5;
 const BESIDE: usize = 10;
@@ -53,15 +59,29 @@ pub struct MotionRank {
     pub of: usize,
     /// So many derivatives of each output are among the rows.
     order: usize,
+    /// So many derivatives of columns have symbols.
+    most: usize,
 }
 
 impl MotionRank {
     /// Of a task's equations. Outputs are differentiated until the rank is full at the first sample with these values of what is sought, three
-    /// times at most.
+    /// times at most, since it is asked window by window.
     pub fn new(task: &Task<'_>, sought: &[f64]) -> MotionRank {
+        MotionRank::with(task, sought, MOST)
+    }
+
+    /// The same with more derivatives, where three do not make the rank full.
+    pub fn thorough(task: &Task<'_>, sought: &[f64]) -> MotionRank {
+        let measured = |column: &usize| task.full.outputs.contains(&task.signals.names()[*column]);
+        let [driven, alone] = MOST_ONCE;
+        let is_driven = !task.full.columns.iter().all(measured);
+        MotionRank::with(task, sought, if is_driven { driven } else { alone })
+    }
+
+    fn with(task: &Task<'_>, sought: &[f64], most: usize) -> MotionRank {
         let model = &task.full;
         let mut graph = model.system.graph.clone();
-        let (jets, values) = jets(&mut graph, model, task);
+        let (jets, values) = jets(&mut graph, model, task, most);
         let mut slopes: HashMap<Symbol, NodeId> =
             model.symbols.iter().copied().zip(model.rate_nodes.iter().copied()).collect();
         for chain in &jets {
@@ -73,7 +93,7 @@ impl MotionRank {
         let mut along = Derivation::new(slopes);
         let columns = model.columns.clone();
         let divisors = divisors(model, task, &values);
-        let inputs = Inputs { values: &values, columns: &columns, task };
+        let inputs = Inputs { values: &values, columns: &columns, task, most };
         let (state, derivatives) = (task.full_state(sought, 0), inputs.derivatives(0));
         let mut last = model.output_nodes.clone();
         let (mut entries, mut order) = (Vec::new(), 0);
@@ -86,7 +106,7 @@ impl MotionRank {
             let rank = found.and_then(|found| {
                 singular_values(&found, &vec![0.0; found.len()], model.symbols.len()).map(|all| all.rank)
             });
-            if order == MOST || rank == Some(model.symbols.len()) {
+            if order == most || rank == Some(model.symbols.len()) || graph.len() > MOST_PARTS {
                 break;
             }
             last = last.into_iter().map(|node| along.apply(&mut graph, node)).collect();
@@ -97,7 +117,7 @@ impl MotionRank {
         let proof = ProofWanted { wanted: Certainty::Computed, field };
         let rows = DecidedRows { quick: &entries, all: &entries, columns: model.symbols.len() };
         let decider = RankDecider::new(&graph, Defined::default(), rows, |_| false, proof).owning();
-        MotionRank { decider, values, divisors, columns, of: model.symbols.len(), order }
+        MotionRank { decider, values, divisors, columns, of: model.symbols.len(), order, most }
     }
 
     /// What it says of the motion through all samples of a task, from these values of what is sought at the first; outputs that are states are where they
@@ -126,7 +146,7 @@ impl MotionRank {
         let motion = motion.unwrap_or_else(|_| vec![sought.to_vec()]);
         let states: Vec<Vec<f64>> =
             motion.iter().enumerate().map(|(row, own)| task.full_state(own, row)).collect();
-        let inputs = Inputs { values: &self.values, columns: &self.columns, task };
+        let inputs = Inputs { values: &self.values, columns: &self.columns, task, most: self.most };
         found.pole = self.first_pole(&inputs, &states);
         if let Some(lost) = stopped {
             found.pole = found.pole.or_else(|| self.pole_at(&inputs, &states, lost.time));
@@ -226,7 +246,12 @@ impl MotionRank {
 }
 
 /// Symbols for the derivatives of what is read, and where the values of all symbols come from.
-fn jets(graph: &mut Graph, model: &Model, task: &Task<'_>) -> (Vec<Vec<Symbol>>, HashMap<Symbol, Value>) {
+fn jets(
+    graph: &mut Graph,
+    model: &Model,
+    task: &Task<'_>,
+    most: usize,
+) -> (Vec<Vec<Symbol>>, HashMap<Symbol, Value>) {
     let mut values: HashMap<Symbol, Value> =
         model.symbols.iter().enumerate().map(|(place, symbol)| (*symbol, Value::State(place))).collect();
     let mut jets = Vec::new();
@@ -237,7 +262,7 @@ fn jets(graph: &mut Graph, model: &Model, task: &Task<'_>) -> (Vec<Vec<Symbol>>,
             continue;
         }
         let mut chain = vec![own];
-        chain.extend((1..=MOST).map(|order| graph.intern(&format!("derivative {order} of {name}"))));
+        chain.extend((1..=most).map(|order| graph.intern(&format!("derivative {order} of {name}"))));
         for (order, symbol) in chain.iter().enumerate() {
             values.insert(*symbol, Value::Column(place, order));
         }
@@ -308,6 +333,7 @@ struct Inputs<'a> {
     values: &'a HashMap<Symbol, Value>,
     columns: &'a [usize],
     task: &'a Task<'a>,
+    most: usize,
 }
 
 impl Inputs<'_> {
@@ -316,7 +342,7 @@ impl Inputs<'_> {
         self.columns.iter().map(|column| vec![self.task.signals.column(*column)[row]]).collect()
     }
 
-    /// The same with derivatives: of each column the value and [`MOST`] of these.
+    /// The same with derivatives: of each column the value and as many of these as have symbols.
     fn derivatives(&self, row: usize) -> Vec<Vec<f64>> {
         let times = self.task.signals.times();
         let count = (2 * BESIDE + 1).min(times.len());
@@ -325,7 +351,7 @@ impl Inputs<'_> {
         let reach = times[near.clone()].iter().map(|time| (time - times[row]).abs()).fold(0.0, f64::max);
         let mut found = self.values_at(row);
         if reach == 0.0 {
-            found.iter_mut().for_each(|own| own.resize(MOST + 1, 0.0));
+            found.iter_mut().for_each(|own| own.resize(self.most + 1, 0.0));
             return found;
         }
         let degree = DEGREE.min(count - 1);
@@ -339,7 +365,7 @@ impl Inputs<'_> {
         let coefficients = svd.and_then(|svd| svd.solve(&read, 1e-12).ok());
         for (place, own) in found.iter_mut().enumerate() {
             let mut factorial = 1.0;
-            for order in 1..=MOST {
+            for order in 1..=self.most {
                 factorial *= order as f64;
                 let coefficient = coefficients.as_ref().filter(|_| order <= degree);
                 let coefficient = coefficient.map_or(0.0, |all| all[(order, place)]);

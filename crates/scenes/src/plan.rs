@@ -1,0 +1,291 @@
+//! What a scene requires of its model, before anything is estimated: constants, the least model with its proof file, what it costs, and what the measurements can tell.
+
+use super::motion_rank::MotionRank;
+use super::run::Experiment;
+use super::scene::SceneError;
+use palmistry_io::UNINTERRUPTED;
+use palmistry_lang::{Assignment, Kind, Role, System, given_number};
+use palmistry_math::expression::{Input, Program};
+use palmistry_math::number::Floats;
+use palmistry_observe::{CalibrationKind, EstimateQuestion, Model, MotionRankFound, Task};
+use palmistry_rank::observability::{Ceiling, GenericAnswer, Seen, generic_answer};
+use palmistry_reduce::{LeastModel, ReduceQuestion, WhyLeftOut, reduce};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// What a scene requires.
+#[derive(Clone, Debug)]
+pub struct ScenePlan {
+    /// The states of the model's file.
+    pub states: Vec<String>,
+    /// What is estimated.
+    pub estimated: Vec<String>,
+    /// Outputs that are followed beside it, since their rates depend on it.
+    pub followed: Vec<String>,
+    /// The outputs with which an estimate is compared.
+    pub compared: Vec<String>,
+    /// What has one value all along, in the order of its names.
+    pub constants: Vec<PlanConstant>,
+    /// Columns of the measurements that drive the model.
+    pub driving: Vec<String>,
+    /// Columns that are constant in some windows and not in others: from which time on they are, or until when, in s.
+    pub steady_for_a_while: Vec<SteadyStretch>,
+    /// Operations of the right-hand side with every column as a signal, and with constants put in.
+    pub operations: [usize; 2],
+    /// Their times, in ns; NaN where no times are kept.
+    pub nanoseconds: [f64; 2],
+    /// The proof file of the least model, or why there is none.
+    pub least: Result<LeastModel, String>,
+    /// What the measurements can tell generically, by the least model.
+    pub generic: Option<PlanRank>,
+    /// The rank along the motion, from the true values where they are known, else from the first guess.
+    pub along: MotionRankFound,
+    /// Whether it is from the true values.
+    pub along_truth: bool,
+}
+
+/// A constant of a scene's model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanConstant {
+    /// Its name.
+    pub name: String,
+    /// Its value, in the file's unit.
+    pub value: f64,
+    /// Whether a column of the measurements has this value in every sample, but for rounding; else the scene says it.
+    pub is_measured: bool,
+}
+
+/// A column that has one value at the beginning or at the end of a recording, and not all along.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SteadyStretch {
+    /// The column.
+    pub name: String,
+    /// The first and the last time at which it has this value, in s.
+    pub from: f64,
+    /// See `from`.
+    pub to: f64,
+    /// Its value.
+    pub value: f64,
+}
+
+/// The generic rank of the least model, and what it says of each unknown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanRank {
+    /// The rank is no less.
+    pub at_least: usize,
+    /// Nor more.
+    pub at_most: usize,
+    /// The number of unknowns.
+    pub of: usize,
+    /// Those that are estimated and unobservable.
+    pub unobservable: Vec<String>,
+    /// Estimated unknowns of which each, were it known, would leave all others observable.
+    pub cures: Vec<String>,
+}
+
+/// A stretch of one value is worth telling from this part of all samples on.
+const WORTH_TELLING: f64 = 0.2;
+
+/// The right-hand side is evaluated so often for its time, three times over.
+const EVALUATIONS: usize = 2000;
+
+impl Experiment {
+    /// What the scene requires; `import` is the path of the model's file as the least model's file names it, from the working folder. Times are measured where they are
+    /// asked for.
+    ///
+    /// # Errors
+    /// As [`Experiment::task`].
+    pub fn plan(&self, import: &str, times: bool, interrupt: &AtomicBool) -> Result<ScenePlan, SceneError> {
+        let task = self.task(interrupt)?;
+        let least = self.least_model(&task, import);
+        let generic = least.as_ref().ok().and_then(|least| self.generic(least));
+        let truth = self.signals.times().first().and_then(|time| self.truth_at(*time));
+        let along_truth = truth.is_some();
+        let start = truth.unwrap_or_else(|| task.guess.clone());
+        let along = MotionRank::thorough(&task, &start).along(&task, &start);
+        let whole = self.with_all_columns();
+        let operations = [&whole, &Some(task.full.as_ref().clone())]
+            .map(|model| model.as_ref().map_or(0, Model::operations));
+        let nanoseconds = match times {
+            true => [whole.as_ref(), Some(task.full.as_ref())]
+                .map(|model| model.map_or(f64::NAN, |model| self.time_of(model, &start))),
+            false => [f64::NAN; 2],
+        };
+        let names = self.names();
+        let is_sought = |name: &String| names.contains(&name.as_str());
+        let is_compared = |name: &String| task.full.outputs.contains(name);
+        let columns = task.full.columns.iter().map(|column| self.signals.names()[*column].clone());
+        Ok(ScenePlan {
+            states: self.system.state_names(),
+            estimated: names.iter().map(|name| (*name).to_owned()).collect(),
+            followed: task.full.states.iter().filter(|name| !is_sought(name)).cloned().collect(),
+            compared: task.full.outputs.clone(),
+            constants: self.constants(),
+            driving: columns.filter(|name| !is_compared(name)).collect(),
+            steady_for_a_while: self.steady_for_a_while(),
+            operations,
+            nanoseconds,
+            least,
+            generic,
+            along,
+            along_truth,
+        })
+    }
+
+    fn constants(&self) -> Vec<PlanConstant> {
+        let measured = |name: &String, value: f64| {
+            let column = self.signals.find(name).map(|place| self.signals.column(place));
+            column.is_some_and(|column| column.first() == Some(&value))
+        };
+        let all = self.question.known.iter();
+        all.map(|(name, value)| PlanConstant {
+            name: name.clone(),
+            value: *value,
+            is_measured: measured(name, *value),
+        })
+        .collect()
+    }
+
+    /// The model that takes every column as a signal, with the constants that the scene gives.
+    fn with_all_columns(&self) -> Option<Model> {
+        let measured: Vec<String> =
+            self.constants().into_iter().filter(|own| own.is_measured).map(|own| own.name).collect();
+        let mut known = self.question.known.clone();
+        known.retain(|name, _| !measured.contains(name));
+        let question = EstimateQuestion { known, ..self.question.clone() };
+        let task = Task::new(&self.system, &question, &self.signals, &UNINTERRUPTED).ok()?;
+        Some(task.full.as_ref().clone())
+    }
+
+    /// The time of a right-hand side at the first sample, in ns: the least of three series.
+    fn time_of(&self, model: &Model, sought: &[f64]) -> f64 {
+        let symbol_values: BTreeMap<&str, f64> =
+            self.names().into_iter().zip(sought.iter().copied()).collect();
+        let program = Program::plain(&model.system.graph, &model.rate_nodes);
+        let value = |input: &Input| -> Option<f64> {
+            let name = model.system.symbol_name(input.symbol()?);
+            let column = || self.signals.find(name).map(|place| self.signals.column(place)[0]);
+            symbol_values.get(name).copied().or_else(column)
+        };
+        let Some(inputs) = program.inputs().iter().map(value).collect::<Option<Vec<f64>>>() else {
+            return f64::NAN;
+        };
+        let Ok(loaded) = program.load(Floats) else { return f64::NAN };
+        let mut registers = Vec::new();
+        let mut least = f64::INFINITY;
+        for _ in 0..3 {
+            let begin = Instant::now();
+            for _ in 0..EVALUATIONS {
+                if std::hint::black_box(loaded.run_in(std::hint::black_box(&inputs), &mut registers)).is_err()
+                {
+                    return f64::NAN;
+                }
+            }
+            least = least.min(begin.elapsed().as_secs_f64() * 1e9 / EVALUATIONS as f64);
+        }
+        least
+    }
+
+    /// Columns that drive the model and have one value at the beginning or the end, for a good part of the samples and not for all.
+    fn steady_for_a_while(&self) -> Vec<SteadyStretch> {
+        let times = self.signals.times();
+        let mut found = Vec::new();
+        for (place, name) in self.signals.names().iter().enumerate() {
+            let is_met = self.system.find_symbol(name).is_some();
+            if !is_met || self.question.known.contains_key(name) {
+                continue;
+            }
+            let column = self.signals.column(place);
+            let alike = |value: f64, rows: &mut dyn Iterator<Item = &f64>| {
+                rows.take_while(|other| **other == value).count()
+            };
+            let (Some(first), Some(last)) = (column.first(), column.last()) else { continue };
+            let (ahead, behind) = (alike(*first, &mut column.iter()), alike(*last, &mut column.iter().rev()));
+            for (count, value, from) in [(ahead, *first, 0), (behind, *last, column.len() - behind)] {
+                if count < column.len() && count as f64 >= WORTH_TELLING * column.len() as f64 {
+                    let to = times[from + count - 1];
+                    found.push(SteadyStretch { name: name.clone(), from: times[from], to, value });
+                }
+            }
+        }
+        found
+    }
+
+    /// The proof file of what the observers believe: constants put in, inputs in the drift.
+    fn least_model(&self, task: &Task<'_>, import: &str) -> Result<LeastModel, String> {
+        let question = &self.question;
+        if let Some((name, _)) = question.guess.iter().find(|(name, _)| CalibrationKind::of(name).is_some()) {
+            return Err(format!("'{name}' is of a sensor, and a proof file has no sensors"));
+        }
+        let system = &self.system;
+        let driven: Vec<(String, String)> = question.inputs.clone();
+        let undriven: Vec<String> = system
+            .fields
+            .iter()
+            .filter(|field| field.role == Role::Input && !field.name.contains('\''))
+            .map(|field| field.name.clone())
+            .filter(|name| !driven.iter().any(|(field, _)| field == name))
+            .collect();
+        let (mut conditions, mut known, mut signals) = (Vec::new(), Vec::new(), Vec::new());
+        for (name, value) in &question.known {
+            match *value == 0.0 {
+                true => conditions.push(format!("{name} = 0")),
+                // the shortest decimal of a number is what somebody wrote
+                false => known.push((name.clone(), given_number(&format!("{value}")).ok())),
+            }
+        }
+        for column in &task.full.columns {
+            let name = &self.signals.names()[*column];
+            let Some(symbol) = system.find_symbol(name) else { continue };
+            let is_parameter = system.symbol_info(symbol).is_some_and(|info| info.kind == Kind::Parameter);
+            if is_parameter && system.unknown_kind(symbol).is_none() {
+                signals.push(name.clone());
+            } else if system.states.contains(&symbol) && !system.known.contains(&symbol) {
+                // a state that is given and moves
+                known.push((name.clone(), None));
+            }
+        }
+        known.retain(|(name, _)| !self.names().contains(&name.as_str()));
+        let question = ReduceQuestion { conditions, known, undriven, driven, signals };
+        reduce(system, &question, import).map_err(|why| why.to_string())
+    }
+
+    /// The generic rank of the least model, and which of what is estimated it does not tell.
+    fn generic(&self, least: &LeastModel) -> Option<PlanRank> {
+        let system = System::parse("the least model", &least.text, Path::new("")).ok()?;
+        let answer = generic_answer(&system, &Assignment::new(), Ceiling::Rests);
+        let names = self.names();
+        let unseen = |answer: &GenericAnswer, system: &System| -> Vec<String> {
+            let all = answer.unknowns.iter().filter(|(_, seen)| *seen == Seen::No);
+            all.map(|(symbol, _)| system.symbol_name(*symbol).to_owned()).collect()
+        };
+        let mut unobservable = unseen(&answer, &system);
+        // what no output depends on is not in the file
+        let gone = least.left_out.iter().filter(|one| matches!(one.why, WhyLeftOut::NoOutputDependsOnIt));
+        unobservable.extend(gone.map(|one| one.name.clone()));
+        unobservable.retain(|name| names.contains(&name.as_str()));
+        let mut cures = Vec::new();
+        for name in &unobservable {
+            let mut other = system.clone();
+            let Some(symbol) = other.find_symbol(name).filter(|symbol| other.states.contains(symbol)) else {
+                continue;
+            };
+            let node = other.graph.symbol(symbol);
+            other.outputs.push((name.clone(), node));
+            other.output_guards.push(Vec::new());
+            let with = generic_answer(&other, &Assignment::new(), Ceiling::Rests);
+            if unseen(&with, &other).iter().all(|one| !names.contains(&one.as_str())) {
+                cures.push(name.clone());
+            }
+        }
+        Some(PlanRank {
+            at_least: answer.at_least,
+            at_most: answer.at_most,
+            of: answer.dimension,
+            unobservable,
+            cures,
+        })
+    }
+}

@@ -1,0 +1,114 @@
+//! `palmistry plan`: what a scene requires of its model, before anything is estimated.
+
+use super::derived::{decided, import_path};
+use super::interrupt::INTERRUPTED;
+use super::output::{Files, Form};
+use super::{Status, Unusable};
+use clap::Args;
+use palmistry::experiment::joint::JointScene;
+use palmistry::experiment::slow::SlowScene;
+use palmistry::experiment::space::SpaceScene;
+use palmistry::experiment::{Experiment, Scene};
+use palmistry::foreign::name_of;
+use palmistry::report::{plan_json, plan_text};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// Says what a scene requires of its model, before anything is estimated.
+///
+/// What the scene and its measurements fix is put into the model: palms at rest or at one rate, known masses, columns that never change. The states that are left, the
+/// terms that vanish and the inputs that are driven make the least model, a proof file whose claims say that it is the scene's model under these conditions, torques
+/// included; they are decided. Then the rank: what the measurements can tell generically, what of the unknowns that are estimated is unobservable and which of them, if it
+/// were known, would cure that, and the rank along the motion itself.
+///
+/// Observers do the same: they put in what never changes, and follow no state that they need not.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  palmistry plan proofs/moll2002/scenes/fixed_palms.toml
+  palmistry plan SCENE --data recording.csv --out least.proof && palmistry rank least.proof
+
+Exit status: 0 nothing that is estimated is shown to be unobservable, 1 something is, or a claim of the least model is not proved, 2 the scene cannot be used.")]
+pub(crate) struct Plan {
+    /// The scene.
+    scene: PathBuf,
+    /// Measurements from a file (CSV or Parquet) instead of a simulation.
+    #[arg(long, value_name = "FILE")]
+    data: Option<PathBuf>,
+    /// Take this seed and not the scene's.
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+    /// Write the proof file of the least model here.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Measure no times, so that the same scene gives the same bytes.
+    #[arg(long)]
+    no_times: bool,
+    /// Print one JSON object with 'constants', 'least_model' (its 'proof' and 'claims'), 'operations', 'nanoseconds', 'rank', 'rank_along_motion'.
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Plan {
+    pub fn run(self) -> miette::Result<Status> {
+        self.has_one_model()?;
+        let mut scene = Scene::read(&self.scene)?;
+        scene.seed = self.seed.unwrap_or(scene.seed);
+        if self.data.as_deref().or(scene.data.record.as_deref()) == Some(Path::new("-")) {
+            let help = "name a file: what never changes is known when all of it is there";
+            return Err(Unusable::report("a plan is not made of standard input", help));
+        }
+        let model = PathBuf::from(&scene.model);
+        let experiment = Experiment::new(scene, self.data.as_deref())?;
+        let whole = std::path::absolute(&model).unwrap_or_else(|_| model.clone());
+        let mut plan = experiment.plan(&name_of(&whole), !self.no_times, &INTERRUPTED)?;
+        let out = self.out.as_deref().filter(|out| out.as_os_str() != "-");
+        let mut outcomes = Vec::new();
+        let mut files = Files::default();
+        if let Ok(least) = &mut plan.least {
+            let import = import_path(&model, out);
+            least.text =
+                least.text.replacen(&format!("\"{}\"", name_of(&whole)), &format!("\"{import}\""), 1);
+            let place = out.unwrap_or(Path::new("least.proof"));
+            outcomes = decided(&least.text, &import, &model, place)
+                .map_err(|why| Unusable::report(format!("the least model is not written: {why}"), ""))?
+                .1;
+            if let Some(out) = out {
+                files.text(out, &least.text);
+                files.announce(out);
+            }
+        } else if out.is_some() {
+            let why = plan.least.as_ref().err().cloned().unwrap_or_default();
+            return Err(Unusable::report(
+                format!("there is no least model to be written: {why}"),
+                "leave out --out",
+            ));
+        }
+        let mut object = plan_json(&experiment.scene, &plan, &outcomes);
+        object["scene"] = json!(name_of(&self.scene));
+        object["written"] = json!(out.map(name_of));
+        let is_told = plan.generic.as_ref().is_none_or(|rank| rank.unobservable.is_empty());
+        let all_proved = outcomes.iter().all(|outcome| outcome.ok);
+        let text = || plan_text(&experiment.scene, &plan, &outcomes).trim_end().to_owned();
+        files.print(Form::of(self.json), object, text, Status::of(is_told && all_proved))
+    }
+
+    /// That the scene is of a kind whose model is a proof file.
+    fn has_one_model(&self) -> miette::Result<()> {
+        let (kind, help) = if let Some(scene) = SpaceScene::read(&self.scene) {
+            scene?;
+            ("a body in space", "'palmistry advise' plans its runs")
+        } else if let Some(scene) = SlowScene::read(&self.scene) {
+            scene?;
+            (
+                "a body that is moved slowly",
+                "its poses are balances of forces and no motion: 'palmistry poses' has them",
+            )
+        } else if let Some(scene) = JointScene::read(&self.scene) {
+            scene?;
+            ("several experiments", "'palmistry reduce' makes the least model of its proof file")
+        } else {
+            return Ok(());
+        };
+        Err(Unusable::report(format!("{}: of {kind} no least model is made", name_of(&self.scene)), help))
+    }
+}
