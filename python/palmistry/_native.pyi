@@ -114,6 +114,9 @@ def accessible(
     system: System, samples: int | None, seed: int, at: list[str], conditions: list[str], order: int | None
 ) -> Told: ...
 def reparametrised(system: System) -> str: ...
+def least_model(
+    system: System, conditions: list[str], known: list[tuple[str, str | None]], undriven: list[str], driven: list[tuple[str, str]], signals: list[str]
+) -> str: ...
 def imported(
     path: str,
     format: str | None,

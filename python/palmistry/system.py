@@ -349,10 +349,43 @@ class System:
         palmistry.errors.Error: 'the text' is no file, which the new system would import
         help: write the source into a file, and read that
         """
+        return self._derived(lambda: _native.reparametrised(self._native), "the observable part", path)
+
+    def reduce(
+        self,
+        fix: str | Iterable[str] = (),
+        *,
+        known: Mapping[str, Any] | Iterable[str] = (),
+        undriven: Iterable[str] = (),
+        drive: Mapping[str, str] | None = None,
+        signals: Iterable[str] = (),
+        path: str | os.PathLike[str] | None = None,
+    ) -> System:
+        """The least model under conditions: without states that the conditions give, constants that are known, states on which no output depends, and of each conservation law one state. Its
+        claims, that it is this system there, are for `prove`.
+
+        fix: conditions such as `omega1 = 0`; each has to stay met along every field. known: states and unknown constants that are known, with values or without: a constant becomes a parameter, a
+        state that moves an output. undriven: inputs that nothing drives. drive: what drives an input; the drift of the new system is f + u g. signals: parameters that are known signals.
+        path: the proof file is written there too. This system has to come from a file, which the new one imports.
+
+        >>> general = palmistry.System(pathlib.Path(ROOT, "proofs", "moll2002", "general.proof"))
+        >>> fixed = general.reduce("omega1 = 0, omega2 = 0, alpha1 = 0, alpha2 = 0", known=["rho"])
+        >>> fixed.states, all(claim.ok for claim in fixed.prove())
+        (['r1', 'r2', 'omega0', 's1', 's2'], True)
+        """
+        given = {name: None for name in known} if not isinstance(known, Mapping) else known
+        pairs = [(name, None if value is None else _number(value)) for name, value in given.items()]
+        conditions = [fix] if isinstance(fix, str) else list(fix)
+        return self._derived(
+            lambda: _native.least_model(self._native, conditions, pairs, list(undriven), list((drive or {}).items()), list(signals)), "the least model", path
+        )
+
+    def _derived(self, made: Callable[[], str], name: str, path: str | os.PathLike[str] | None) -> System:
+        """A system whose text imports this one's file; written, where there is a path, with that file as it is named from there."""
         if not os.path.isfile(self.name):
             raise Error(f"'{self.name}' is no file, which the new system would import", "write the source into a file, and read that")
-        text = _native.reparametrised(self._native)
-        found = System.parse(text, "the observable part")
+        text = made()
+        found = System.parse(text, name)
         if path is not None:
             here = os.path.relpath(self.name, os.path.dirname(os.path.abspath(path)))
             with open(path, "w", encoding="utf-8") as file:

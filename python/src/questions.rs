@@ -9,11 +9,13 @@ use palmistry::drops::where_it_drops;
 use palmistry::file::read_text;
 use palmistry::foreign::name_of;
 use palmistry::import::{ForeignFormat, ForeignUnknowns, ImportQuestion, import, import_petab, petab_beside};
+use palmistry::reduction::{ReduceQuestion, reduce};
 use palmistry::report::{
     accessibility_json, accessibility_text, drops_json, drops_page, drops_text, global_json, global_text,
     recheck_json, recheck_text,
 };
 use palmistry::sweep::{RankError, answer_accessibility, answer_solutions};
+use palmistry::system::given_number;
 use palmistry::{RankQuestion, System as Read};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
@@ -85,6 +87,33 @@ pub fn reparametrised(py: Python<'_>, system: &System) -> PyResult<String> {
         };
         let name = system.name.clone();
         palmistry::observability::reparametrise(&system, found, &name).map_err(|why| why.to_string())
+    })?;
+    found.map_err(|why| unusable(py, &why, None))
+}
+
+/// The text of the least model of a system under conditions, as a proof file. What is known may have a value, in the language of proof files.
+#[pyfunction]
+pub fn least_model(
+    py: Python<'_>,
+    system: &System,
+    conditions: Vec<String>,
+    known: Vec<(String, Option<String>)>,
+    undriven: Vec<String>,
+    driven: Vec<(String, String)>,
+    signals: Vec<String>,
+) -> PyResult<String> {
+    let system = Read::clone(system.read_system());
+    let found = interruptible(py, move |_| {
+        let value = |(name, value): (String, Option<String>)| match value {
+            None => Ok((name, None)),
+            Some(text) => match given_number(&text) {
+                Ok(value) => Ok((name, Some(value))),
+                Err(why) => Err(format!("{name}: {why}")),
+            },
+        };
+        let known = known.into_iter().map(value).collect::<Result<_, String>>()?;
+        let question = ReduceQuestion { conditions, known, undriven, driven, signals };
+        reduce(&system, &question, &system.name).map(|found| found.text).map_err(|why| why.to_string())
     })?;
     found.map_err(|why| unusable(py, &why, None))
 }

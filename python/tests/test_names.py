@@ -66,6 +66,8 @@ COMMANDS = {
         "--from": "format", "--model": "model", "--output": "outputs", "--unknown": "unknown", "--input": "inputs", "--unknown-input": "unknown_inputs", "--state": "states",
         "--out": "import_problem",
     }),
+    "reduce": (["System.reduce"], {"--fix": "fix", "--known": "known", "--undriven": "undriven", "--drive": "drive", "--signal": "signals", "--out": "path"}),
+    "plan": (["run"], {"--data": "run", "--out": "run"}),
     "new": (["run"], {}),
     "demo": (["run"], {}),
     "fmt": (["System.formatted"], {"--check": "*compare `System.formatted` with `System.source`*"}),

@@ -17,7 +17,13 @@ use palmistry::{System, tradeoff::growth_of_lie_derivatives};
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-const REGIMES: [&str; 4] = ["general.proof", "same_rate.proof", "one_palm_fixed.proof", "fixed_palms.proof"];
+const REGIMES: [&str; 5] = [
+    "general.proof",
+    "constraint/two_rates.proof",
+    "same_rate.proof",
+    "one_palm_fixed.proof",
+    "fixed_palms.proof",
+];
 
 fn read(name: &str) -> System {
     System::read(&Path::new("proofs/moll2002").join(name)).unwrap()

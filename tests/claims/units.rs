@@ -128,7 +128,13 @@ fn unit(exponents: std::ops::RangeInclusive<i32>) -> impl Strategy<Value = RBig>
 #[test]
 fn the_files_declare_these_dimensions() {
     use palmistry::system::Base;
-    for file in ["general.proof", "same_rate.proof", "one_palm_fixed.proof", "fixed_palms.proof"] {
+    for file in [
+        "general.proof",
+        "constraint/two_rates.proof",
+        "same_rate.proof",
+        "one_palm_fixed.proof",
+        "fixed_palms.proof",
+    ] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002").join(file);
         let system = System::read(&path).unwrap();
         assert!(system.dimensions_tell_units(), "{file}");

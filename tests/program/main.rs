@@ -10,6 +10,7 @@ mod damaged;
 mod editors;
 mod harm;
 mod import;
+mod least;
 mod observable_pictures;
 mod page;
 mod paper;

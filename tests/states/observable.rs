@@ -26,6 +26,7 @@ fn rank(arguments: &[&str]) -> Value {
 fn every_regime_is_observable_on_its_box() {
     for (file, dimension) in [
         (GENERAL, 10),
+        ("proofs/moll2002/constraint/two_rates.proof", 7),
         (SAME_RATE, 6),
         ("proofs/moll2002/one_palm_fixed.proof", 6),
         ("proofs/moll2002/fixed_palms.proof", 5),

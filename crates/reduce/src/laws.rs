@@ -1,8 +1,8 @@
 //! Conservation laws: sums of states, with rational factors, whose rate is zero along every field.
 
-use super::remaining::Remaining;
 use dashu::base::{Abs, Signed};
 use dashu::rational::RBig;
+use palmistry_lang::System;
 use palmistry_math::expression::{
     Graph, NodeId, Program, Symbol, ZeroTest, draw_residues, expand_angles, identically_zero,
 };
@@ -51,76 +51,63 @@ impl Law {
     }
 }
 
-/// The conservation laws of the states that move, each with a state of its own that no other law holds: by choice one that is no output.
-pub(crate) fn laws(remaining: &mut Remaining) -> Vec<Law> {
-    let columns = columns(remaining);
-    if columns.len() < 2 || columns.len() > MOST_STATES {
+/// The states of a system that move, and their rates along each field. What the others may give comes last.
+pub(crate) struct Movements<'s> {
+    pub system: &'s mut System,
+    pub states: Vec<Symbol>,
+    pub rates: Vec<Vec<NodeId>>,
+}
+
+/// The conservation laws of some states, each with a state of its own that no other law holds: one of the last, since in reduced echelon form the last columns are those
+/// that the others give.
+pub(crate) fn laws(moving: &mut Movements<'_>) -> Vec<Law> {
+    let count = moving.states.len();
+    if !(2..=MOST_STATES).contains(&count) {
         return Vec::new();
     }
     let mut rng = ChaCha8Rng::seed_from_u64(0x006c_6177); // any fixed seed: what is found is shown
-    let Some(found) = vectors(remaining, &columns, &mut rng) else { return Vec::new() };
+    let Some(found) = vectors(moving, &mut rng) else { return Vec::new() };
     let mut laws: Vec<Law> = Vec::new();
     let several = found.len() > 1;
     for factors in found {
-        let terms: Vec<(Symbol, RBig)> = columns
-            .iter()
-            .zip(factors)
-            .filter(|(_, factor)| !factor.is_zero())
-            .map(|(place, factor)| (remaining.states[*place], factor))
-            .collect();
-        let Some(((state, own), others)) = terms.split_last() else { continue };
-        if others.is_empty() || !holds(remaining, &terms, &mut rng) {
+        let terms: Vec<(usize, RBig)> =
+            factors.into_iter().enumerate().filter(|(_, factor)| !factor.is_zero()).collect();
+        if terms.len() < 2 || !holds(moving, &terms, &mut rng) {
             continue;
         }
-        let name = name(remaining, several.then_some(laws.len() + 1));
-        let total = remaining.system.graph.intern(&name);
-        let text = text(remaining, &terms);
-        laws.push(Law { state: *state, own: own.clone(), others: others.to_vec(), total, name, text });
+        let mut terms: Vec<(Symbol, RBig)> =
+            terms.into_iter().map(|(place, factor)| (moving.states[place], factor)).collect();
+        let text = text(moving.system, &terms);
+        let Some((state, own)) = terms.pop() else { continue };
+        let name = name(moving.system, several.then_some(laws.len() + 1));
+        let total = moving.system.graph.intern(&name);
+        laws.push(Law { state, own, others: terms, total, name, text });
     }
     laws
 }
 
-/// The places of the states that move. In reduced echelon form the last columns are those that the others give: what is an output by itself comes first.
-fn columns(remaining: &Remaining) -> Vec<usize> {
-    let outputs: Vec<Symbol> =
-        remaining.output_nodes().filter_map(|node| remaining.system.graph.as_symbol(node)).collect();
-    let known = |place: &usize| {
-        let state = remaining.states[*place];
-        outputs.contains(&state) || remaining.further_outputs.contains(&state)
-    };
-    let moves = |place: &usize| !remaining.is_constant(*place);
-    let (mut first, last): (Vec<usize>, Vec<usize>) =
-        (0..remaining.states.len()).filter(moves).partition(known);
-    first.extend(last);
-    first
-}
-
 /// What annihilates the rates at random points modulo a prime, as rational numbers; none where no point has values.
-fn vectors(remaining: &Remaining, columns: &[usize], rng: &mut ChaCha8Rng) -> Option<Vec<Vec<RBig>>> {
-    let graph = &remaining.system.graph;
+fn vectors(moving: &Movements<'_>, rng: &mut ChaCha8Rng) -> Option<Vec<Vec<RBig>>> {
+    let graph = &moving.system.graph;
+    let count = moving.states.len();
     let field = PrimeField::random(rng);
     let mut rows = Vec::new();
-    for rates in &remaining.rates {
-        let nodes: Vec<NodeId> = columns.iter().map(|place| rates[*place]).collect();
-        let mut program = Program::with_unknown_functions(graph, &nodes, remaining.system.angle_test());
+    for rates in &moving.rates {
+        let mut program = Program::with_unknown_functions(graph, rates, moving.system.angle_test());
         if program.bare_angle().is_some() {
-            program = Program::with_unknown_functions(graph, &nodes, |_| false);
+            program = Program::with_unknown_functions(graph, rates, |_| false);
         }
         let loaded = program.load(field).ok()?;
         let mut registers = Vec::new();
-        for _ in 0..columns.len() + SPARE_POINTS {
+        for _ in 0..count + SPARE_POINTS {
             let values = (0..ATTEMPTS)
                 .find_map(|_| loaded.run(&draw_residues(&program, &field, rng), &mut registers).ok())?;
             rows.push(values);
         }
     }
-    let basis = kernel(&field, rows, columns.len()).ok()?;
-    Some(
-        basis
-            .iter()
-            .filter_map(|vector| vector.iter().map(|value| fraction(&field, *value)).collect())
-            .collect(),
-    )
+    let basis = kernel(&field, rows, count).ok()?;
+    let fractions = |vector: &Vec<u64>| vector.iter().map(|value| fraction(&field, *value)).collect();
+    Some(basis.iter().filter_map(fractions).collect())
 }
 
 /// The small fraction that a residue stands for.
@@ -141,28 +128,24 @@ fn fraction(field: &PrimeField, residue: u64) -> Option<RBig> {
 }
 
 /// Whether the rate of a sum is zero along every field, for all values.
-fn holds(remaining: &mut Remaining, terms: &[(Symbol, RBig)], rng: &mut ChaCha8Rng) -> bool {
-    let places: Vec<Option<usize>> =
-        terms.iter().map(|(state, _)| remaining.states.iter().position(|other| other == state)).collect();
+fn holds(moving: &mut Movements<'_>, terms: &[(usize, RBig)], rng: &mut ChaCha8Rng) -> bool {
+    let graph = &mut moving.system.graph;
     let mut sums = Vec::new();
-    for rates in &remaining.rates {
-        let graph = &mut remaining.system.graph;
+    for rates in &moving.rates {
         let mut sum = graph.integer(0);
-        for (place, (_, factor)) in places.iter().zip(terms) {
-            let Some(place) = place else { return false };
+        for (place, factor) in terms {
             let factor = graph.rational(factor.clone());
             let term = graph.mul(factor, rates[*place]);
             sum = graph.add(sum, term);
         }
         sums.push(sum);
     }
-    let is_angle = &remaining.system.angle_test();
-    let expanded = expand_angles(&mut remaining.system.graph, &sums, is_angle);
-    matches!(identically_zero(&remaining.system.graph, &expanded, is_angle, rng), ZeroTest::Zero { .. })
+    let is_angle = &moving.system.angle_test();
+    let expanded = expand_angles(&mut moving.system.graph, &sums, is_angle);
+    matches!(identically_zero(&moving.system.graph, &expanded, is_angle, rng), ZeroTest::Zero { .. })
 }
 
-fn name(remaining: &Remaining, number: Option<usize>) -> String {
-    let system = &remaining.system;
+fn name(system: &System, number: Option<usize>) -> String {
     let wanted = number.map_or_else(|| "total".to_owned(), |number| format!("total{number}"));
     let mut name = wanted.clone();
     let mut more = 1;
@@ -173,10 +156,10 @@ fn name(remaining: &Remaining, number: Option<usize>) -> String {
     name
 }
 
-fn text(remaining: &Remaining, terms: &[(Symbol, RBig)]) -> String {
+fn text(system: &System, terms: &[(Symbol, RBig)]) -> String {
     let mut text = String::new();
     for (state, factor) in terms {
-        let name = remaining.system.symbol_name(*state);
+        let name = system.symbol_name(*state);
         let size = factor.clone().abs();
         let sign = match (text.is_empty(), factor.is_negative()) {
             (true, false) => "",

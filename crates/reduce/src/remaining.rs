@@ -1,6 +1,6 @@
 //! What remains of a system while conditions are put in and things are left out.
 
-use super::laws::{Law, laws};
+use super::laws::{Law, Movements, laws};
 use super::question::{NotReduced, ReduceQuestion};
 use dashu::rational::RBig;
 use palmistry_lang::{Assignment, Kind, Role, System, Time, UnknownKind, nearest};
@@ -352,9 +352,9 @@ impl Remaining {
     }
 
     fn is_measured(&self, symbol: Symbol) -> bool {
-        self.outputs
-            .iter()
-            .any(|output| !output.is_zero && self.system.graph.as_symbol(output.node) == Some(symbol))
+        let is_it = |node: NodeId| self.system.graph.as_symbol(node) == Some(symbol);
+        let mut outputs = self.outputs.iter().filter(|output| !output.is_zero);
+        self.further_outputs.contains(&symbol) || outputs.any(|output| is_it(output.node))
     }
 
     /// What is not known: states, unknown constants, unknown signals.
@@ -393,7 +393,14 @@ impl Remaining {
         if self.states.iter().any(|state| self.system.known.contains(state)) {
             return; // of an amount that is partly known at the beginning something is known
         }
-        for law in laws(self) {
+        let (mut places, rest): (Vec<usize>, Vec<usize>) = (0..self.states.len())
+            .filter(|place| !self.is_constant(*place))
+            .partition(|place| self.is_measured(self.states[*place]));
+        places.extend(rest);
+        let of = |rates: &Vec<NodeId>| places.iter().map(|place| rates[*place]).collect();
+        let rates = self.rates.iter().map(of).collect();
+        let states = places.iter().map(|place| self.states[*place]).collect();
+        for law in laws(&mut Movements { system: &mut self.system, states, rates }) {
             let mut values = Assignment::new();
             let given = law.given(&mut self.system.graph);
             values.insert(law.state, given);

@@ -31,6 +31,33 @@ pub struct Program {
     inputs: Vec<Input>,
     outputs: Vec<u32>,
     bare_angle: Option<Symbol>,
+    /// So many operations at the beginning depend on no input.
+    constant: usize,
+}
+
+impl Operation {
+    fn operands(self) -> [Option<u32>; 2] {
+        match self {
+            Operation::Constant(_) | Operation::Pi | Operation::Input(_) => [None; 2],
+            Operation::Add(a, b) | Operation::Sub(a, b) | Operation::Mul(a, b) | Operation::Div(a, b) => {
+                [Some(a), Some(b)]
+            }
+            Operation::Neg(a) | Operation::Power(a, _) | Operation::Apply(_, a) => [Some(a), None],
+        }
+    }
+
+    fn with_operands(self, of: impl Fn(u32) -> u32) -> Operation {
+        match self {
+            Operation::Constant(_) | Operation::Pi | Operation::Input(_) => self,
+            Operation::Add(a, b) => Operation::Add(of(a), of(b)),
+            Operation::Sub(a, b) => Operation::Sub(of(a), of(b)),
+            Operation::Mul(a, b) => Operation::Mul(of(a), of(b)),
+            Operation::Div(a, b) => Operation::Div(of(a), of(b)),
+            Operation::Neg(a) => Operation::Neg(of(a)),
+            Operation::Power(a, n) => Operation::Power(of(a), n),
+            Operation::Apply(function, a) => Operation::Apply(function, of(a)),
+        }
+    }
 }
 
 /// Where and why a program stopped.
@@ -87,6 +114,7 @@ impl Program {
             inputs: Vec::new(),
             outputs: Vec::new(),
             bare_angle: None,
+            constant: 0,
         };
         let input_of = |id: NodeId| -> Option<Input> {
             match graph.node(id) {
@@ -135,7 +163,29 @@ impl Program {
             program.origins.push(id);
         }
         program.outputs = roots.iter().map(|root| place[root]).collect();
+        program.constants_first();
         program
+    }
+
+    /// Puts what depends on no input at the beginning, so that it is computed once where a program is loaded.
+    fn constants_first(&mut self) {
+        let mut is_constant: Vec<bool> = Vec::with_capacity(self.operations.len());
+        for operation in &self.operations {
+            let operands = operation.operands();
+            let mut constant = operands.into_iter().flatten().map(|operand| is_constant[operand as usize]);
+            is_constant.push(!matches!(operation, Operation::Input(_)) && constant.all(|one| one));
+        }
+        self.constant = is_constant.iter().filter(|one| **one).count();
+        let mut order: Vec<usize> = (0..self.operations.len()).collect();
+        order.sort_by_key(|place| !is_constant[*place]); // stable: operands stay before what is made of them
+        let mut places = vec![0; order.len()];
+        for (new, old) in order.iter().enumerate() {
+            places[*old] = new as u32;
+        }
+        let place = |old: u32| places[old as usize];
+        self.operations = order.iter().map(|old| self.operations[*old].with_operands(place)).collect();
+        self.origins = order.iter().map(|old| self.origins[*old]).collect();
+        self.outputs.iter_mut().for_each(|output| *output = place(*output));
     }
 
     /// The number of operations, inputs and constants included.
@@ -182,7 +232,17 @@ impl Program {
     /// Where a constant has no image (a denominator that vanishes modulo the prime).
     pub fn load<A: Arithmetic>(&self, arithmetic: A) -> Result<Loaded<'_, A>, Refusal> {
         let constants = self.constants.iter().map(|c| arithmetic.rational(c)).collect::<Result<_, _>>()?;
-        Ok(Loaded { program: self, arithmetic, constants })
+        let mut loaded = Loaded { program: self, arithmetic, constants, known: Vec::new() };
+        // what is refused here is refused, and named, where it runs
+        let mut known = Vec::with_capacity(self.constant);
+        for operation in &self.operations[..self.constant] {
+            match loaded.compute(*operation, &[], &known) {
+                Ok(value) => known.push(value),
+                Err(_) => break,
+            }
+        }
+        loaded.known = known;
+        Ok(loaded)
     }
 }
 
@@ -204,6 +264,8 @@ pub struct Loaded<'p, A: Arithmetic> {
     program: &'p Program,
     arithmetic: A,
     constants: Vec<A::Number>,
+    /// The values of the first operations: what depends on no input.
+    known: Vec<A::Number>,
 }
 
 impl<A: Arithmetic> Loaded<'_, A> {
@@ -234,23 +296,12 @@ impl<A: Arithmetic> Loaded<'_, A> {
         inputs: &[A::Number],
         registers: &'r mut Vec<A::Number>,
     ) -> Result<impl Iterator<Item = &'r A::Number>, Failure> {
-        let arithmetic = &self.arithmetic;
         budget::steps(self.program.operations.len());
         registers.clear();
-        for (operation, &node) in self.program.operations.iter().zip(&self.program.origins) {
-            let at = |index: u32| &registers[index as usize];
-            let value = match *operation {
-                Operation::Constant(index) => Ok(self.constants[index as usize].clone()),
-                Operation::Pi => arithmetic.pi(),
-                Operation::Input(index) => Ok(inputs[index as usize].clone()),
-                Operation::Add(a, b) => arithmetic.add(at(a), at(b)),
-                Operation::Sub(a, b) => arithmetic.sub(at(a), at(b)),
-                Operation::Mul(a, b) => arithmetic.mul(at(a), at(b)),
-                Operation::Div(a, b) => arithmetic.div(at(a), at(b)),
-                Operation::Neg(a) => arithmetic.neg(at(a)),
-                Operation::Power(a, n) => arithmetic.power(at(a), n),
-                Operation::Apply(function, a) => arithmetic.apply(function, at(a)),
-            };
+        registers.extend_from_slice(&self.known);
+        let first = self.known.len();
+        for (operation, &node) in self.program.operations.iter().zip(&self.program.origins).skip(first) {
+            let value = self.compute(*operation, inputs, registers);
             match value {
                 Ok(value) => registers.push(value),
                 Err(refusal) => {
@@ -262,6 +313,30 @@ impl<A: Arithmetic> Loaded<'_, A> {
         }
         let registers: &'r [A::Number] = registers;
         Ok(self.program.outputs.iter().map(|index| &registers[*index as usize]))
+    }
+
+    /// The value of an operation from those before it. A call would move numbers of many derivatives twice.
+    #[inline(always)]
+    fn compute(
+        &self,
+        operation: Operation,
+        inputs: &[A::Number],
+        registers: &[A::Number],
+    ) -> Result<A::Number, Refusal> {
+        let arithmetic = &self.arithmetic;
+        let at = |index: u32| &registers[index as usize];
+        match operation {
+            Operation::Constant(index) => Ok(self.constants[index as usize].clone()),
+            Operation::Pi => arithmetic.pi(),
+            Operation::Input(index) => Ok(inputs[index as usize].clone()),
+            Operation::Add(a, b) => arithmetic.add(at(a), at(b)),
+            Operation::Sub(a, b) => arithmetic.sub(at(a), at(b)),
+            Operation::Mul(a, b) => arithmetic.mul(at(a), at(b)),
+            Operation::Div(a, b) => arithmetic.div(at(a), at(b)),
+            Operation::Neg(a) => arithmetic.neg(at(a)),
+            Operation::Power(a, n) => arithmetic.power(at(a), n),
+            Operation::Apply(function, a) => arithmetic.apply(function, at(a)),
+        }
     }
 
     /// The factor of an operation's divisor that may be zero: through products, powers and quotients to the sum or

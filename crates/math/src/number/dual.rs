@@ -131,6 +131,25 @@ impl<T: Differentiable> Arithmetic for Duals<T> {
             Function::Log => a.ln(),
         })
     }
+    /// By repeated squaring, as for other numbers, but without a product with one, and without the exact number one for each power.
+    fn power(&self, a: &T, n: i32) -> Result<T, Refusal> {
+        let one = || T::constant(T::Base::from_f64(1.0));
+        let (mut result, mut square, mut rest) = (None, a.clone(), n.unsigned_abs());
+        while rest > 0 {
+            if rest & 1 == 1 {
+                result = Some(match result {
+                    None => square.clone(),
+                    Some(result) => result * &square,
+                });
+            }
+            rest >>= 1;
+            if rest > 0 {
+                square = square.clone() * &square;
+            }
+        }
+        let result = result.unwrap_or_else(one);
+        if n < 0 { self.div(&one(), &result) } else { Ok(result) }
+    }
     /// Unknown: a dual number whose value is zero may still have a derivative.
     fn is_zero(&self, a: &T) -> Option<bool> {
         match a.base().is_zero() {
