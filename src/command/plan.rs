@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 /// included; they are decided. Then the rank: what the measurements can tell generically, what of the unknowns that are estimated is unobservable and which of them, if it
 /// were known, would cure that, and the rank along the motion itself.
 ///
-/// Observers do the same: they put in what never changes, and follow no state that they need not.
+/// Observers put in the columns that drive their model and never change, and follow no state that they need not.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry plan proofs/moll2002/scenes/fixed_palms.toml

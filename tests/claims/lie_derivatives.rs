@@ -5,6 +5,7 @@ use dashu::base::Abs;
 use dashu::integer::IBig;
 use dashu::rational::RBig;
 use num_dual::{Dual64, DualNum};
+use palmistry::System;
 use palmistry::expression::{Program, Symbol, expand_angles};
 use palmistry::number::{
     Arithmetic, DoubleDouble, Enclosures, Floats, Interval, Rationals, RealNumber, rational_from_f64,
@@ -13,7 +14,7 @@ use palmistry::number::{
 use palmistry::observability::{
     Branch, Coordinate, Locus, differential_by_duals, float_inputs, lie_derivative_by_duals,
 };
-use palmistry::{System, tradeoff::growth_of_lie_derivatives};
+use palmistry::tradeoff::{WaysAgreement, compare_ways, growth_of_lie_derivatives};
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
@@ -233,4 +234,25 @@ fn the_graph_grows_as_a_power_of_the_order() {
     let exponent = (size(12) / size(6)).log2();
     assert!(exponent < 3.2, "operations grow as order^{exponent:.2}");
     assert!(size(12) < 216.0 * size(2), "{growth:?}");
+}
+
+/// What `verify` holds to each other: graph, Taylor series and dual numbers, for all Lie derivatives of the codistribution, along the drift and every input of every regime.
+#[test]
+fn three_ways_agree_on_every_regime() {
+    for name in REGIMES {
+        let system = read(name);
+        let found = compare_ways(&system, 1).unwrap();
+        println!("{name}: {found:?}");
+        assert!(found.agree(), "{name}: {found:?}");
+        assert_eq!(found.fields.len(), system.moving_fields().len(), "{name}");
+        assert!(
+            found.derivatives >= system.outputs.len() && found.order >= 1 && found.states == 8,
+            "{name}: {found:?}"
+        );
+    }
+    // what is no number agrees with nothing
+    let found = compare_ways(&read("same_rate.proof"), 1).unwrap();
+    for wrong in [1e-3, f64::NAN, f64::INFINITY] {
+        assert!(!WaysAgreement { largest: [wrong, 0.0], ..found.clone() }.agree(), "{wrong}");
+    }
 }

@@ -57,6 +57,7 @@ pub fn reduce(system: &System, question: &ReduceQuestion, import: &str) -> Resul
     remaining.take_constants_as_known(question)?;
     remaining.leave_out_what_no_output_needs();
     remaining.use_conservation_laws();
+    remaining.put_in_order();
     let after = remaining.counts();
     let text = text::text(&mut remaining, import)?;
     Ok(LeastModel {

@@ -8,7 +8,7 @@ use palmistry_math::expression::{NodeId, Symbol, ZeroTest, expand_angles, identi
 use palmistry_rank::observability::{parse_condition, solve_conditions};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// Why something of the larger system is not in the smaller one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -367,18 +367,26 @@ impl Remaining {
 
     /// Leaves out states and constants on which no output depends, by itself or by the rate of something on which it does.
     pub fn leave_out_what_no_output_needs(&mut self) {
-        let outputs: Vec<NodeId> = self.output_nodes().collect();
-        let mut needed: HashSet<Symbol> = self.system.graph.symbols_of(outputs).into_iter().collect();
-        needed.extend(&self.further_outputs);
-        loop {
-            let of_needed: Vec<NodeId> = (0..self.states.len())
-                .filter(|place| needed.contains(&self.states[*place]))
-                .flat_map(|place| self.rates.iter().map(move |rates| rates[place]))
-                .collect();
-            let before = needed.len();
-            needed.extend(self.system.graph.symbols_of(of_needed));
-            if needed.len() == before {
-                break;
+        let places: HashMap<Symbol, usize> =
+            self.states.iter().enumerate().map(|(place, state)| (*state, place)).collect();
+        let mut needed: HashSet<Symbol> = self.further_outputs.iter().copied().collect();
+        let mut open: Vec<NodeId> = self.output_nodes().collect();
+        let rates_of = |symbol: &Symbol| {
+            let place = places.get(symbol).copied();
+            self.rates.iter().filter_map(move |rates| Some(rates[place?]))
+        };
+        open.extend(self.further_outputs.iter().flat_map(rates_of));
+        // each expression is looked at once, whatever shares it
+        let mut seen: HashSet<NodeId> = HashSet::new();
+        while let Some(node) = open.pop() {
+            if !seen.insert(node) {
+                continue;
+            }
+            open.extend(self.system.graph.node(node).operands());
+            if let Some(symbol) = self.system.graph.as_symbol(node)
+                && needed.insert(symbol)
+            {
+                open.extend(rates_of(&symbol));
             }
         }
         for place in (0..self.states.len()).rev() {
@@ -423,10 +431,17 @@ impl Remaining {
             rates.remove(place);
         });
         self.left_out.push(LeftOutState { name: self.system.symbol_name(symbol).to_owned(), why });
-        let order = |one: &LeftOutState| {
-            self.all.iter().position(|symbol| self.system.symbol_name(*symbol) == one.name)
-        };
-        self.left_out.sort_by_key(order);
+    }
+
+    /// Puts what was left out into the order of the larger system.
+    pub fn put_in_order(&mut self) {
+        let places: HashMap<&str, usize> = self
+            .all
+            .iter()
+            .enumerate()
+            .map(|(place, symbol)| (self.system.symbol_name(*symbol), place))
+            .collect();
+        self.left_out.sort_by_key(|one| places.get(one.name.as_str()).copied());
     }
 
     /// Puts values into all rates and outputs.

@@ -185,6 +185,9 @@ pub(crate) fn text(remaining: &mut Remaining, import: &str) -> Result<String, No
     let mut out = String::new();
     head(&mut out, remaining, import);
     declarations(&mut out, remaining);
+    if !names.definitions.is_empty() {
+        out.push('\n');
+    }
     for place in 0..names.definitions.len() {
         let (name, node) = (names.definitions[place].name.clone(), names.definitions[place].node);
         let value = names.text(remaining, node, Some(node));
@@ -343,7 +346,6 @@ fn declarations(out: &mut String, remaining: &Remaining) {
             let _ = writeln!(out, "assume {assumed}");
         }
     }
-    out.push('\n');
 }
 
 /// Writes the states of a list, where there are some, and empties it.

@@ -138,7 +138,7 @@ pub fn plan_text(scene: &Scene, plan: &ScenePlan, outcomes: &[Outcome]) -> Strin
     }
     let [general, own] = plan.operations;
     let mut text = format!(
-        "right-hand side of the observers: {} with every column a signal, {own} with constants put in",
+        "right-hand side: {} with every column a signal, {own} with constants put in",
         counted(general, "operation")
     );
     if plan.nanoseconds.iter().all(|time| time.is_finite()) {

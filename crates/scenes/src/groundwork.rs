@@ -2,7 +2,7 @@
 
 use super::channels;
 use super::known_motion::KnownMotion;
-use super::least;
+use super::least::{self, ConstantColumns};
 use super::scene::{Guess, Scene, SceneError};
 use super::simulation::{Simulation, body, constants};
 use super::system_motion::SystemMotion;
@@ -224,7 +224,7 @@ pub(super) fn estimate_question(
     let settings = &scene.observer;
     // a column that never changes is a constant: the model then has only what the regime asks for
     if steady == Steady::AreConstants {
-        known.extend(least::constants(scene, system, &known, signals));
+        known.extend(least::constants(scene, system, &known, signals, ConstantColumns::Driving));
     }
     let unguided = match settings.guess {
         Guess::None => Unguided::of(scene, system, &known, signals)?,

@@ -1,5 +1,6 @@
 //! What a scene requires of its model, before anything is estimated: constants, the least model with its proof file, what it costs, and what the measurements can tell.
 
+use super::least::{self, ConstantColumns};
 use super::motion_rank::MotionRank;
 use super::run::Experiment;
 use super::scene::SceneError;
@@ -12,6 +13,7 @@ use palmistry_rank::observability::{Ceiling, GenericAnswer, Seen, generic_answer
 use palmistry_reduce::{LeastModel, ReduceQuestion, WhyLeftOut, reduce};
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -99,32 +101,35 @@ impl Experiment {
     /// As [`Experiment::task`].
     pub fn plan(&self, import: &str, times: bool, interrupt: &AtomicBool) -> Result<ScenePlan, SceneError> {
         let task = self.task(interrupt)?;
-        let least = self.least_model(&task, import);
+        let known = self.known_to_the_least_model();
+        let smallest = self.model_with(known.clone());
+        let smallest = smallest.as_ref().unwrap_or(&task.full);
+        let least = self.least_model(smallest, &known, import);
         let generic = least.as_ref().ok().and_then(|least| self.generic(least));
         let truth = self.signals.times().first().and_then(|time| self.truth_at(*time));
         let along_truth = truth.is_some();
         let start = truth.unwrap_or_else(|| task.guess.clone());
         let along = MotionRank::thorough(&task, &start).along(&task, &start);
         let whole = self.with_all_columns();
-        let operations = [&whole, &Some(task.full.as_ref().clone())]
-            .map(|model| model.as_ref().map_or(0, Model::operations));
+        let operations = [whole.as_ref().map_or(0, |model| model.operations()), smallest.operations()];
         let nanoseconds = match times {
-            true => [whole.as_ref(), Some(task.full.as_ref())]
+            true => [whole.as_ref(), Some(smallest)]
                 .map(|model| model.map_or(f64::NAN, |model| self.time_of(model, &start))),
             false => [f64::NAN; 2],
         };
         let names = self.names();
         let is_sought = |name: &String| names.contains(&name.as_str());
         let is_compared = |name: &String| task.full.outputs.contains(name);
-        let columns = task.full.columns.iter().map(|column| self.signals.names()[*column].clone());
+        let columns: Vec<String> =
+            smallest.columns.iter().map(|column| self.signals.names()[*column].clone()).collect();
         Ok(ScenePlan {
             states: self.system.state_names(),
             estimated: names.iter().map(|name| (*name).to_owned()).collect(),
-            followed: task.full.states.iter().filter(|name| !is_sought(name)).cloned().collect(),
+            followed: smallest.states.iter().filter(|name| !is_sought(name)).cloned().collect(),
             compared: task.full.outputs.clone(),
-            constants: self.constants(),
-            driving: columns.filter(|name| !is_compared(name)).collect(),
-            steady_for_a_while: self.steady_for_a_while(),
+            constants: self.constants(&known),
+            driving: columns.into_iter().filter(|name| !is_compared(name)).collect(),
+            steady_for_a_while: self.steady_for_a_while(&known),
             operations,
             nanoseconds,
             least,
@@ -134,29 +139,38 @@ impl Experiment {
         })
     }
 
-    fn constants(&self) -> Vec<PlanConstant> {
+    /// What observers know, and the measured states that never change.
+    fn known_to_the_least_model(&self) -> BTreeMap<String, f64> {
+        let mut known = self.question.known.clone();
+        let which = ConstantColumns::MeasuredToo;
+        known.extend(least::constants(&self.scene, &self.system, &known, &self.signals, which));
+        known
+    }
+
+    fn constants(&self, known: &BTreeMap<String, f64>) -> Vec<PlanConstant> {
         let measured = |name: &String, value: f64| {
             let column = self.signals.find(name).map(|place| self.signals.column(place));
             column.is_some_and(|column| column.first() == Some(&value))
         };
-        let all = self.question.known.iter();
-        all.map(|(name, value)| PlanConstant {
+        let constant = |(name, value): (&String, &f64)| PlanConstant {
             name: name.clone(),
             value: *value,
             is_measured: measured(name, *value),
-        })
-        .collect()
+        };
+        known.iter().map(constant).collect()
+    }
+
+    /// The model with what is known.
+    fn model_with(&self, known: BTreeMap<String, f64>) -> Option<Arc<Model>> {
+        let question = EstimateQuestion { known, ..self.question.clone() };
+        let task = Task::new(&self.system, &question, &self.signals, &UNINTERRUPTED).ok()?;
+        Some(task.full)
     }
 
     /// The model that takes every column as a signal, with the constants that the scene gives.
-    fn with_all_columns(&self) -> Option<Model> {
-        let measured: Vec<String> =
-            self.constants().into_iter().filter(|own| own.is_measured).map(|own| own.name).collect();
-        let mut known = self.question.known.clone();
-        known.retain(|name, _| !measured.contains(name));
-        let question = EstimateQuestion { known, ..self.question.clone() };
-        let task = Task::new(&self.system, &question, &self.signals, &UNINTERRUPTED).ok()?;
-        Some(task.full.as_ref().clone())
+    fn with_all_columns(&self) -> Option<Arc<Model>> {
+        let known = self.constants(&self.question.known).into_iter().filter(|own| !own.is_measured);
+        self.model_with(known.map(|own| (own.name, own.value)).collect())
     }
 
     /// The time of a right-hand side at the first sample, in ns: the least of three series.
@@ -189,12 +203,12 @@ impl Experiment {
     }
 
     /// Columns that drive the model and have one value at the beginning or the end, for a good part of the samples and not for all.
-    fn steady_for_a_while(&self) -> Vec<SteadyStretch> {
+    fn steady_for_a_while(&self, known: &BTreeMap<String, f64>) -> Vec<SteadyStretch> {
         let times = self.signals.times();
         let mut found = Vec::new();
         for (place, name) in self.signals.names().iter().enumerate() {
             let is_met = self.system.find_symbol(name).is_some();
-            if !is_met || self.question.known.contains_key(name) {
+            if !is_met || known.contains_key(name) {
                 continue;
             }
             let column = self.signals.column(place);
@@ -213,8 +227,13 @@ impl Experiment {
         found
     }
 
-    /// The proof file of what the observers believe: constants put in, inputs in the drift.
-    fn least_model(&self, task: &Task<'_>, import: &str) -> Result<LeastModel, String> {
+    /// The proof file of what the observers believe, with constants put in and inputs in the drift.
+    fn least_model(
+        &self,
+        model: &Model,
+        known_values: &BTreeMap<String, f64>,
+        import: &str,
+    ) -> Result<LeastModel, String> {
         let question = &self.question;
         if let Some((name, _)) = question.guess.iter().find(|(name, _)| CalibrationKind::of(name).is_some()) {
             return Err(format!("'{name}' is of a sensor, and a proof file has no sensors"));
@@ -229,14 +248,14 @@ impl Experiment {
             .filter(|name| !driven.iter().any(|(field, _)| field == name))
             .collect();
         let (mut conditions, mut known, mut signals) = (Vec::new(), Vec::new(), Vec::new());
-        for (name, value) in &question.known {
+        for (name, value) in known_values {
             match *value == 0.0 {
                 true => conditions.push(format!("{name} = 0")),
                 // the shortest decimal of a number is what somebody wrote
                 false => known.push((name.clone(), given_number(&format!("{value}")).ok())),
             }
         }
-        for column in &task.full.columns {
+        for column in &model.columns {
             let name = &self.signals.names()[*column];
             let Some(symbol) = system.find_symbol(name) else { continue };
             let is_parameter = system.symbol_info(symbol).is_some_and(|info| info.kind == Kind::Parameter);

@@ -13,7 +13,7 @@ use palmistry_rank::sweep::RankAnswer;
 use palmistry_workbench::paper::{
     DerivativesFound, FileFindings, LineFound, MapFound, ReductionFound, SetRank,
 };
-use palmistry_workbench::tradeoff::{ExpandedText, LandscapeRows, Map, PrintedExpression};
+use palmistry_workbench::tradeoff::{ExpandedText, LandscapeRows, Map, PrintedExpression, WaysAgreement};
 
 /// The unit of a name, where it is known.
 pub(super) type Units<'a> = &'a dyn Fn(&str) -> Option<String>;
@@ -39,6 +39,7 @@ pub(super) fn file_section(anchor: &str, file: &FileFindings, units: Units<'_>) 
             @for map in &file.maps { (maps(map, units)) }
             @if !file.lines.is_empty() { (lines(&file.lines, units)) }
             @for found in &file.printed { (printed(found, &file.outcomes)) }
+            @if let Some(found) = &file.ways { (ways(found)) }
             @if let Some(found) = &file.derivatives { (derivatives(found)) }
         }
     }
@@ -296,6 +297,20 @@ fn denominator(found: &ExpandedText) -> String {
         if *power == 1 { text } else { format!("{text}^{power}") }
     };
     found.denominator.iter().map(factor).collect::<Vec<_>>().join(" ")
+}
+
+/// Whether three ways of automatic differentiation agree.
+fn ways(found: &WaysAgreement) -> Markup {
+    let [by_duals, by_series] = found.largest;
+    html! {
+        p class=[(!found.agree()).then_some("bad")] {
+            "Automatic differentiation: num-dual's dual numbers and Taylor series give the graph's Lie derivatives ("
+            (found.derivatives) " along " (found.fields.join(", ")) ", up to order " (found.order) ") to "
+            (format!("{by_duals:.0e}")) " and " (format!("{by_series:.0e}"))
+            @if found.too_long > 0 { "; " (found.too_long) " are too long to be compared" }
+            "."
+        }
+    }
 }
 
 fn derivatives(found: &DerivativesFound) -> Markup {

@@ -32,8 +32,8 @@ fn text(source: &str, file: usize, anchors: &Anchors) -> String {
     for (place, line) in source.lines().enumerate() {
         let line = in_letters(line).replace('&', "&amp;").replace('<', "&lt;");
         match named.contains(&(place + 1)) {
-            true => out.push_str(&format!("<li id=\"{}\">{line}\n", Anchors::line_name(file, place + 1))),
-            false => out.push_str(&format!("<li>{line}\n")),
+            true => out.push_str(&format!("<li id=\"{}\">{line}", Anchors::line_name(file, place + 1))),
+            false => out.push_str(&format!("<li>{line}")),
         }
     }
     out.push_str("</ol>");

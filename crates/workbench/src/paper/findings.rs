@@ -5,7 +5,7 @@ use super::left_out::LeftOut;
 use super::reduction::ReductionFound;
 use super::views::{LineFound, MapFound, SetRank};
 use crate::tradeoff::stress::StressStudy;
-use crate::tradeoff::{Growth, PrintedExpression, RouteAgreement, Trade};
+use crate::tradeoff::{Growth, PrintedExpression, RouteAgreement, Trade, WaysAgreement};
 use palmistry_lang::System;
 use palmistry_prove::certificate::RegionAnswer;
 use palmistry_prove::claim::Outcome;
@@ -47,6 +47,8 @@ pub struct FileFindings {
     pub reductions: Vec<ReductionFound>,
     /// How fast Lie derivatives grow, of the file that was chosen.
     pub derivatives: Option<DerivativesFound>,
+    /// Three ways of automatic differentiation to all Lie derivatives of the codistribution, of a file that names something to be looked at.
+    pub ways: Option<WaysAgreement>,
     /// Speed against accuracy, in short.
     pub trade: Option<Trade>,
     /// The extremes, in short.
@@ -70,6 +72,7 @@ impl FileFindings {
             printed: Vec::new(),
             reductions: Vec::new(),
             derivatives: None,
+            ways: None,
             trade: None,
             stress: None,
             certificate: None,
@@ -82,6 +85,7 @@ impl FileFindings {
         self.outcomes.iter().all(|outcome| outcome.ok)
             && self.ranks.iter().all(SetRank::as_expected)
             && self.reductions.iter().all(ReductionFound::proved)
+            && self.ways.as_ref().is_none_or(WaysAgreement::agree)
             && self.left_out.is_empty()
     }
 }

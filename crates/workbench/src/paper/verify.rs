@@ -7,10 +7,11 @@ use super::reduction::reduce;
 use super::views::{draw, has_a_rank, rank_on};
 use crate::tradeoff::stress::{Stress, StressOptions, StressStudy};
 use crate::tradeoff::{
-    LandscapeRows, TradeQuestion, compare_routes, growth_of_lie_derivatives, printed_values, trade,
+    LandscapeRows, TradeQuestion, compare_routes, compare_ways, growth_of_lie_derivatives, printed_values,
+    trade,
 };
 use palmistry_io::UNINTERRUPTED;
-use palmistry_lang::{ReadError, Statement, System};
+use palmistry_lang::{ReadError, Statement, System, Time};
 use palmistry_math::expression::syntax::{Expr, ExprKind};
 use palmistry_prove::certificate::certify_region;
 use palmistry_prove::claim::{decide_all, isolated};
@@ -302,6 +303,10 @@ impl Run<'_> {
         if measured.derivatives {
             let derivatives = || derivatives(system, seed);
             self.keep(place, "Lie derivatives", derivatives, |file, found| file.derivatives = Some(found));
+        }
+        if names_something(system) && has_a_rank(system) && system.time == Time::Continuous {
+            let ways = || compare_ways(system, seed);
+            self.keep(place, "automatic differentiation", ways, |file, found| file.ways = Some(found));
         }
         if measured.trade {
             let question = TradeQuestion {

@@ -12,6 +12,7 @@ mod routes;
 pub mod stress;
 mod term_by_term;
 mod trade;
+mod ways;
 
 #[doc(hidden)]
 pub use growth::{Growth, growth_of_lie_derivatives};
@@ -31,3 +32,5 @@ pub use trade::{
     Combination, CombinationLeftOut, CorrectDigits, DIGITS_TOLERANCE, Derivative, DerivativeResult, Number,
     RankMethod, TIME_TOLERANCE, Trade, TradeQuestion, trade,
 };
+#[doc(hidden)]
+pub use ways::{WaysAgreement, compare_ways};

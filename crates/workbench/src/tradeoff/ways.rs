@@ -1,0 +1,116 @@
+//! Three ways of automatic differentiation to the Lie derivatives that a rank is made of, along the drift and every input: derivatives of the shared expression graph,
+//! Taylor series along the flow, and num-dual's nested duals. They share the values of fields and outputs and no rule of differentiation.
+
+use palmistry_lang::{Assignment, System};
+use palmistry_math::expression::{NodeId, Program, Symbol};
+use palmistry_math::number::Floats;
+use palmistry_rank::observability::{
+    Branch, Codistribution, Length, Locus, Word, float_inputs, lie_derivative_by_duals,
+    lie_derivative_by_series,
+};
+use std::collections::{BTreeMap, HashMap};
+
+/// How far three ways to the same Lie derivatives agree.
+#[derive(Clone, Debug)]
+pub struct WaysAgreement {
+    /// The fields along which is differentiated, in the order of the file.
+    pub fields: Vec<String>,
+    /// How many Lie derivatives of outputs, those that the codistribution takes.
+    pub derivatives: usize,
+    /// Those that are too long to be compared.
+    pub too_long: usize,
+    /// How often the longest is differentiated.
+    pub order: usize,
+    /// At how many states of the sample box each.
+    pub states: usize,
+    /// The largest difference of duals and of series from the graph, relative to the largest value of the derivative at these states.
+    pub largest: [f64; 2],
+}
+
+/// Differences above this are none of rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// States of the sample box.
+const STATES: u64 = 8;
+
+/// Longer expressions are not compared, nor more derivatives than [`MOST`].
+const LONGEST: usize = 20_000;
+const MOST: usize = 200;
+
+impl WaysAgreement {
+    /// Whether the ways agree but for rounding.
+    pub fn agree(&self) -> bool {
+        self.largest.iter().all(|difference| *difference < ROUNDING)
+    }
+}
+
+/// Compares the ways for all Lie derivatives that a system's codistribution takes.
+///
+/// # Errors
+/// In words, where the system has no Lie derivatives, or a state cannot be drawn or evaluated.
+pub fn compare_ways(system: &System, seed: u64) -> Result<WaysAgreement, String> {
+    let mut system = system.clone();
+    let words = Codistribution::new(&mut system, &Assignment::new(), Length::UntilItStops)
+        .map_err(|why| why.to_string())?;
+    let taken: Vec<Word> = words.words.iter().filter(|word| !word.fields.is_empty()).cloned().collect();
+    let (mut kept, mut programs, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    for word in taken.iter().take(MOST) {
+        let output = system.outputs[word.output].1;
+        let by_graph =
+            word.fields.iter().rev().fold(output, |value, field| system.lie_derivative(*field, value));
+        let by_series = lie_derivative_by_series(&mut system, &word.fields, output)
+            .map_err(|failure| failure.refusal.to_string())?;
+        let both: [NodeId; 2] = [by_graph, by_series];
+        let program = Program::plain(&system.graph, &both);
+        if program.len() <= LONGEST {
+            kept.push(word);
+            programs.push(program);
+            values.extend(both);
+        }
+    }
+    let locus = Locus::new(&mut system, &Branch::default(), &BTreeMap::new(), &values)
+        .map_err(|why| why.to_string())?;
+    let mut points = Vec::new();
+    for index in 0..STATES {
+        let state = locus.draw(seed, index).map_err(|why| why.to_string())?;
+        let mut point: HashMap<Symbol, f64> = system
+            .symbols()
+            .filter_map(|(symbol, info)| Some((symbol, info.default.as_ref()?.to_f64().value())))
+            .collect();
+        point.extend(state.values.iter().map(|(symbol, value)| (*symbol, value.to_f64())));
+        points.push(point);
+    }
+    let mut largest = [0.0f64; 2];
+    for (word, program) in kept.iter().zip(&programs) {
+        let loaded = program.load(Floats).map_err(|why| why.to_string())?;
+        let (mut size, mut differences) = (0.0f64, [0.0f64; 2]);
+        for point in &points {
+            let inputs = float_inputs(program, |symbol| point.get(&symbol).copied().unwrap_or(f64::NAN));
+            let found =
+                loaded.run(&inputs, &mut Vec::new()).map_err(|failure| failure.refusal.to_string())?;
+            let by_duals =
+                lie_derivative_by_duals(&system, &word.fields, system.outputs[word.output].1, point)
+                    .map_err(|error| format!("{error:?}"))?;
+            size = size.max(found[0].abs());
+            for (place, other) in [by_duals, found[1]].into_iter().enumerate() {
+                // a NaN is no agreement
+                let difference = (other - found[0]).abs();
+                differences[place] =
+                    if difference <= differences[place] { differences[place] } else { difference };
+            }
+        }
+        for (largest, difference) in largest.iter_mut().zip(differences) {
+            let relative = if difference == 0.0 { 0.0 } else { difference / size };
+            *largest = if relative <= *largest { *largest } else { relative };
+        }
+    }
+    let fields = system.moving_fields().into_iter().map(|field| system.fields[field].name.clone());
+    Ok(WaysAgreement {
+        fields: fields.collect(),
+        derivatives: kept.len(),
+        too_long: taken.len() - kept.len(),
+        order: kept.iter().map(|word| word.fields.len()).max().unwrap_or(0),
+        states: points.len(),
+        largest,
+    })
+}
