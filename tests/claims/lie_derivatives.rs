@@ -241,7 +241,7 @@ fn the_graph_grows_as_a_power_of_the_order() {
 fn three_ways_agree_on_every_regime() {
     for name in REGIMES {
         let system = read(name);
-        let found = compare_ways(&system, 1).unwrap();
+        let found = compare_ways(&system, 1).unwrap().expect("Lie derivatives");
         println!("{name}: {found:?}");
         assert!(found.agree(), "{name}: {found:?}");
         assert_eq!(found.fields.len(), system.moving_fields().len(), "{name}");
@@ -251,8 +251,18 @@ fn three_ways_agree_on_every_regime() {
         );
     }
     // what is no number agrees with nothing
-    let found = compare_ways(&read("same_rate.proof"), 1).unwrap();
+    let found = compare_ways(&read("same_rate.proof"), 1).unwrap().unwrap();
     for wrong in [1e-3, f64::NAN, f64::INFINITY] {
         assert!(!WaysAgreement { largest: [wrong, 0.0], ..found.clone() }.agree(), "{wrong}");
     }
+    // a derivative that vanishes without looking so, beside another; and no derivative at all, of which nothing is said
+    let parse = |text: &str| System::parse("s.proof", text, Path::new("")).unwrap();
+    let vanishes = parse(
+        "system \"s\" state x, y, z drift f x' = y*(x - 1/3) - y*x + y/3 y' = z z' = sin(y) output x, y \
+         sample x in [0.1, 1] y in [0.1, 1] z in [0.1, 1]",
+    );
+    let found = compare_ways(&vanishes, 1).unwrap().unwrap();
+    assert!(found.agree() && found.derivatives > 0, "{found:?}");
+    let none = parse("system \"s\" state x drift f x' = -x output x sample x in [0, 1]");
+    assert!(compare_ways(&none, 1).unwrap().is_none());
 }

@@ -64,7 +64,7 @@ fn a_least_model_is_printed_and_mistakes_are_named() {
         "{told}"
     );
     for (options, words) in [
-        (&["--fix", "omega2 = 0"][..], "does not stay met"),
+        (&["--fix", "omega2 = 0"][..], "is not shown to stay met"),
         (&["--fix", "sin(phi2) = 0"], "2 ways"),
         (&["--fix", "omega1 > 0"], "inequality"),
         (&["--fix", "omega1 ="], "column"),
@@ -129,6 +129,33 @@ fn plans_of_scenes() {
         assert_eq!(output.status.code(), Some(2), "{scene}");
         assert!(String::from_utf8_lossy(&output.stderr).contains("least model"), "{scene}");
     }
+}
+
+/// What reads one value because it is rounded is no constant, neither all along nor for a while.
+#[test]
+fn a_rounded_reading_is_no_constant() {
+    let folder = folder();
+    write(
+        &folder,
+        "s.proof",
+        "system \"s\" state x, k drift f x' = -k*x k' = 0 output x, k sample x in [0, 2] k in [0, 2]",
+    );
+    let rows: String = (0..40)
+        .map(|row| format!("{},{},1\n", f64::from(row) * 0.1, (-0.1 * f64::from(row)).exp()))
+        .collect();
+    write(&folder, "d.csv", format!("time,x,k\n{rows}"));
+    let plan = |sensor: &str| {
+        let text = format!(
+            "title = \"s\"\nmodel = \"s.proof\"\n[data]\nrecord = \"d.csv\"\n[observer]\nestimate = [\"x\"]\nwindow = 39\n{sensor}"
+        );
+        let scene = write(&folder, "s.toml", &text);
+        let output = palmistry(&["plan", scene.to_str().unwrap(), "--json", "--no-times"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        json(&output)["constants"].as_array().unwrap().len()
+    };
+    assert_eq!(plan(""), 1, "k, which is read without error and does not move");
+    assert_eq!(plan("[sensor]\nresolution = 0.5\n"), 0);
+    assert_eq!(plan("[sensor.k]\nnoise = 0.1\n[sensor.x]\nnoise = 0.1\n"), 0);
 }
 
 /// Palms that stop half way: the part at rest is told.

@@ -10,7 +10,9 @@
 
 #![warn(missing_docs)]
 
+mod flows;
 mod laws;
+mod names;
 mod question;
 mod remaining;
 mod text;

@@ -32,8 +32,10 @@ pub enum NotReduced {
     /// Conditions that can be met in several ways.
     #[error("the conditions can be met in {ways} ways: {list}; write the one that is meant")]
     SeveralWays { ways: usize, list: String },
-    /// A condition that motion leaves.
-    #[error("'{condition}' does not stay met: along {field} the rate of one side less the other is {rate}")]
+    /// A condition that motion leaves, or may leave.
+    #[error(
+        "'{condition}' is not shown to stay met: along {field} the rate of one side less the other is {rate}"
+    )]
     NotKept { condition: String, field: String, rate: String },
     /// A rate or an output that divides by zero where the conditions hold.
     #[error("where the conditions hold, {what} divides by zero")]

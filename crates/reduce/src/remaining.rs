@@ -1,10 +1,13 @@
 //! What remains of a system while conditions are put in and things are left out.
 
+use super::flows::{Flow, component, flows, given};
 use super::laws::{Law, Movements, laws};
 use super::question::{NotReduced, ReduceQuestion};
 use dashu::rational::RBig;
-use palmistry_lang::{Assignment, Kind, Role, System, Time, UnknownKind, nearest};
-use palmistry_math::expression::{NodeId, Symbol, ZeroTest, expand_angles, identically_zero};
+use palmistry_lang::{Assignment, System, Time, UnknownKind, nearest};
+use palmistry_math::expression::{
+    NodeId, Related, Symbol, ZeroTest, expand_angles, identically_zero, zero_by_relations,
+};
 use palmistry_rank::observability::{parse_condition, solve_conditions};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -21,6 +24,8 @@ pub enum WhyLeftOut {
     MeasuredConstant,
     /// No output depends on it: it is unobservable.
     NoOutputDependsOnIt,
+    /// No output depends on it, and its initial condition is known.
+    NotNeeded,
     /// A conservation law gives it by the others: the law, and the name of the constant.
     Conserved {
         /// What is conserved: `S + I + R`.
@@ -47,15 +52,6 @@ pub(crate) struct RemainingOutput {
     pub is_zero: bool,
     /// Whether the smaller system measures it: not so what is known anyway.
     pub is_kept: bool,
-}
-
-/// A field of the smaller system: a field of the larger one, or its drift with the inputs that something drives.
-#[derive(Clone, Debug)]
-pub(crate) struct Flow {
-    pub role: Role,
-    pub name: String,
-    /// Fields of the larger system by their places, each with the symbol that it is multiplied by.
-    pub terms: Vec<(Option<Symbol>, usize)>,
 }
 
 /// A system on its way to a smaller one.
@@ -282,18 +278,22 @@ impl Remaining {
                 let there = self.system.graph.substitute(&[difference], &values)[0];
                 let is_angle = &self.system.angle_test();
                 let expanded = expand_angles(&mut self.system.graph, &[there], is_angle);
-                if !matches!(
-                    identically_zero(&self.system.graph, &expanded, is_angle, &mut rng),
-                    ZeroTest::Zero { .. }
-                ) {
+                let found = identically_zero(&self.system.graph, &expanded, is_angle, &mut rng);
+                let is_shown = match found {
+                    ZeroTest::Zero { .. } => true,
+                    ZeroTest::Pole(_) => false,
+                    // functions may satisfy relations that the plain test does not know
+                    ZeroTest::Nonzero(_) | ZeroTest::Unknown(_) => matches!(
+                        zero_by_relations(&mut self.system.graph, &expanded, &[], is_angle, &mut rng),
+                        Related::Zero { .. }
+                    ),
+                };
+                if !is_shown {
                     let condition =
                         format!("{} = {}", self.system.symbol_name(*symbol), self.system.graph.text(*value));
                     let field = format!("{} {}", flow.role.name(), flow.name);
-                    return Err(NotReduced::NotKept {
-                        condition,
-                        field,
-                        rate: self.system.graph.text(there),
-                    });
+                    let rate = self.system.graph.text(there);
+                    return Err(NotReduced::NotKept { condition, field, rate });
                 }
             }
         }
@@ -328,7 +328,9 @@ impl Remaining {
                 self.leave_out(place, WhyLeftOut::KnownConstant);
             } else if !self.is_measured(symbol) {
                 self.further_outputs.push(symbol);
-                self.remarks.push(format!("'{name}' moves: it is known as an output, and stays a state"));
+                self.remarks.push(format!(
+                    "'{name}' is known as an output and stays a state: its rate is not zero as it is written"
+                ));
             }
         }
         for place in (0..self.states.len()).rev() {
@@ -391,7 +393,9 @@ impl Remaining {
         }
         for place in (0..self.states.len()).rev() {
             if !needed.contains(&self.states[place]) {
-                self.leave_out(place, WhyLeftOut::NoOutputDependsOnIt);
+                let is_known = self.system.known.contains(&self.states[place]);
+                let why = if is_known { WhyLeftOut::NotNeeded } else { WhyLeftOut::NoOutputDependsOnIt };
+                self.leave_out(place, why);
             }
         }
     }
@@ -458,74 +462,4 @@ impl Remaining {
     pub fn is_declared_constant(&self, symbol: Symbol) -> bool {
         self.system.unknown_kind(symbol) == Some(UnknownKind::Parameter)
     }
-}
-
-/// The fields that are kept: each input by itself, or all that is driven in the drift.
-fn flows(system: &System, question: &ReduceQuestion) -> Result<Vec<Flow>, NotReduced> {
-    // that a known signal may change is a field of its own, which no file writes
-    let moving: Vec<usize> = system
-        .moving_fields()
-        .into_iter()
-        .filter(|field| !system.fields[*field].name.contains('\''))
-        .collect();
-    let inputs: Vec<&str> = moving
-        .iter()
-        .filter(|field| system.fields[**field].role == Role::Input)
-        .map(|field| system.fields[*field].name.as_str())
-        .collect();
-    let named = question.undriven.iter().chain(question.driven.iter().map(|(field, _)| field));
-    if let Some(name) = named.into_iter().find(|name| !inputs.contains(&name.as_str())) {
-        return Err(NotReduced::NoInput { name: name.clone(), inputs: inputs.join(", ") });
-    }
-    let mut flows = Vec::new();
-    for field in moving {
-        let of = &system.fields[field];
-        let is_driven = |(name, _): &&(String, String)| *name == of.name;
-        if question.undriven.contains(&of.name) || question.driven.iter().any(|one| is_driven(&one)) {
-            continue;
-        }
-        flows.push(Flow { role: of.role, name: of.name.clone(), terms: vec![(None, field)] });
-    }
-    if !question.driven.is_empty() {
-        if !flows.iter().any(|flow| flow.role == Role::Drift) {
-            let name =
-                ["f", "drift", "motion"].into_iter().find(|name| !inputs.contains(name)).unwrap_or("f0");
-            flows.insert(0, Flow { role: Role::Drift, name: name.to_owned(), terms: Vec::new() });
-        }
-        for (name, by) in &question.driven {
-            let symbol = given(system, by)?;
-            let place = system.fields.iter().position(|field| field.name == *name);
-            if let (Some(place), Some(drift)) =
-                (place, flows.iter_mut().find(|flow| flow.role == Role::Drift))
-            {
-                drift.terms.push((Some(symbol), place));
-            }
-        }
-    }
-    Ok(flows)
-}
-
-/// A parameter or a known signal.
-fn given(system: &System, name: &str) -> Result<Symbol, NotReduced> {
-    let is_given = |symbol: &Symbol| {
-        system.known.contains(symbol)
-            || system.symbol_info(*symbol).is_some_and(|info| info.kind == Kind::Parameter)
-                && system.unknown_kind(*symbol).is_none()
-    };
-    system.find_symbol(name).filter(is_given).ok_or_else(|| NotReduced::NoSignal { name: name.to_owned() })
-}
-
-/// What a field does to a symbol.
-fn component(system: &mut System, flow: &Flow, symbol: Symbol) -> NodeId {
-    let mut rate = system.graph.integer(0);
-    for (by, field) in &flow.terms {
-        let found = system.fields[*field].components.iter().find(|(other, _)| *other == symbol);
-        let Some((_, mut moved)) = found.copied() else { continue };
-        if let Some(by) = by {
-            let by = system.graph.symbol(*by);
-            moved = system.graph.mul(by, moved);
-        }
-        rate = system.graph.add(rate, moved);
-    }
-    rate
 }

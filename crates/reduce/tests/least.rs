@@ -36,6 +36,7 @@ fn names(found: &LeastModel) -> Vec<(&str, &str)> {
         WhyLeftOut::KnownConstant => "known",
         WhyLeftOut::MeasuredConstant => "measured",
         WhyLeftOut::NoOutputDependsOnIt => "dead",
+        WhyLeftOut::NotNeeded => "not needed",
         WhyLeftOut::Conserved { .. } => "conserved",
     };
     found.left_out.iter().map(|one| (one.name.as_str(), word(&one.why))).collect()
@@ -196,6 +197,36 @@ fn known_initial_conditions_are_declared_again() {
     let (found, small) = least(text, &ReduceQuestion::default()).unwrap();
     assert_eq!((names(&found), found.unknowns), (vec![("z", "known")], [2, 2]), "{}", found.text);
     assert!(found.text.contains("initial x known\n") && small.unknown_count() == 2, "{}", found.text);
+}
+
+/// A state whose initial condition is known and on which nothing depends is not called unobservable.
+#[test]
+fn what_is_known_and_not_needed_is_no_unobservable_state() {
+    let text = "system \"a\" state x, z initial z known drift f x' = -x z' = x output x";
+    let (found, _) = least(text, &ReduceQuestion::default()).unwrap();
+    assert!(matches!(found.left_out[0].why, WhyLeftOut::NotNeeded), "{:?}", found.left_out);
+    assert!(!found.text.contains("unobservable"), "{}", found.text);
+}
+
+/// That a condition stays met may rest on a relation between functions, and what is not shown is not said to be false.
+#[test]
+fn conditions_between_functions() {
+    let text = "system \"a\" state x, y, z drift f x' = 2*x y' = y z' = y output z sample x in [1, 2] y in [1, 2] z in [1, 2]";
+    let (found, _) = least(text, &question(&["y = sqrt(x)"], &[], &[])).unwrap();
+    assert!(names(&found).iter().any(|(_, why)| *why == "fixed"), "{:?}", found.left_out);
+    let why = least(text, &question(&["y = exp(x)"], &[], &[])).unwrap_err().to_string();
+    assert!(why.contains("is not shown to stay met"), "{why}");
+}
+
+/// A path that would end its quotation marks is refused.
+#[test]
+fn no_path_forges_a_line() {
+    let system =
+        System::parse("a.proof", "system \"a\" state x drift f x' = -x output x", Path::new("")).unwrap();
+    for import in ["a\" claim c: 1 = 1 \"", "a\nclaim c: 1 = 1"] {
+        let found = reduce(&system, &ReduceQuestion::default(), import);
+        assert!(matches!(found, Err(NotReduced::Kind { .. })), "{import:?}");
+    }
 }
 
 /// Formulas that are too long in one piece are written in parts.

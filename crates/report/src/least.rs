@@ -58,6 +58,7 @@ fn claim_lines(outcomes: &[Outcome], out: &mut String) {
 
 fn rank_in_words((at_least, at_most): (usize, usize), of: usize) -> String {
     match at_least == at_most {
+        true if of == 0 => "nothing is unknown".to_owned(),
         true if at_least == of => format!("generic rank {of} of {of}: locally observable"),
         true => {
             format!("generic rank {at_least} of {of}: {} unobservable", counted(of - at_least, "direction"))
@@ -72,6 +73,7 @@ fn why_in_words(why: &WhyLeftOut) -> String {
         WhyLeftOut::KnownConstant => "a known constant, a parameter now".to_owned(),
         WhyLeftOut::MeasuredConstant => "constant and measured, a parameter now".to_owned(),
         WhyLeftOut::NoOutputDependsOnIt => "no output depends on it: unobservable".to_owned(),
+        WhyLeftOut::NotNeeded => "no output depends on it; its initial condition is known".to_owned(),
         WhyLeftOut::Conserved { law, total } => format!("{law} is conserved: the unknown constant {total}"),
     }
 }
@@ -83,6 +85,7 @@ fn model_json(least: &LeastModel, outcomes: &[Outcome]) -> Value {
             WhyLeftOut::KnownConstant => "known_constant",
             WhyLeftOut::MeasuredConstant => "measured_constant",
             WhyLeftOut::NoOutputDependsOnIt => "no_output_depends_on_it",
+            WhyLeftOut::NotNeeded => "not_needed",
             WhyLeftOut::Conserved { .. } => "conserved",
         };
         json!({ "name": one.name, "why": word, "in_words": why_in_words(&one.why) })
@@ -107,6 +110,9 @@ pub fn plan_text(scene: &Scene, plan: &ScenePlan, outcomes: &[Outcome]) -> Strin
     prose(&shown(&scene.title), &mut out);
     let (states, estimated) = (counted(plan.states.len(), "state"), plan.estimated.join(", "));
     prose(&format!("the model's file has {states}; estimated: {estimated}"), &mut out);
+    if !scene.observer.modes.is_empty() {
+        prose("the scene has several modes: this is the plan of its first model", &mut out);
+    }
     if !plan.followed.is_empty() {
         prose(&format!("followed beside it: {}", plan.followed.join(", ")), &mut out);
     }
@@ -157,12 +163,10 @@ fn rank_lines(plan: &ScenePlan, out: &mut String) {
         if !unobservable.is_empty() {
             prose(&format!("estimated and unobservable: {}", unobservable.join(", ")), out);
             match cures.is_empty() {
-                true => {
-                    prose("no single one of them, if it were known, would leave the others observable", out)
-                }
+                true => prose("no single one of them, measured as well, is shown to cure that", out),
                 false => {
                     let text = format!(
-                        "known would do: with {} under 'known' all else that is estimated is observable",
+                        "with {} measured as well, or known, all else that is estimated is observable",
                         cures.join(" or ")
                     );
                     prose(&text, out);
@@ -226,6 +230,7 @@ pub fn plan_json(scene: &Scene, plan: &ScenePlan, outcomes: &[Outcome]) -> Value
     let along = &plan.along;
     json!({
         "title": scene.title,
+        "of_several_modes": !scene.observer.modes.is_empty(),
         "states": plan.states,
         "estimated": plan.estimated,
         "followed": plan.followed,

@@ -35,6 +35,9 @@ pub(super) fn constants(
     which: ConstantColumns,
 ) -> BTreeMap<String, f64> {
     let settings = &scene.observer;
+    // of a body between palms the common errors are those of the contacts, else those of every output
+    let has_palms = TOUCH.iter().all(|name| system.outputs.iter().any(|(output, _)| output == name));
+    let all_err = !has_palms && (scene.sensor.noise > 0.0 || scene.sensor.resolution > 0.0);
     let mut found = BTreeMap::new();
     let mut outputs = Vec::new();
     for (place, name) in signals.names().iter().enumerate() {
@@ -57,7 +60,7 @@ pub(super) fn constants(
             if is_steady {
                 found.insert(name.clone(), *first);
             }
-        } else if which == ConstantColumns::MeasuredToo && !scene.channels.contains_key(name) {
+        } else if which == ConstantColumns::MeasuredToo && !all_err && !scene.channels.contains_key(name) {
             // a sensor that errs may read one value of what moves
             outputs.push((name.clone(), *first));
         }

@@ -83,7 +83,7 @@ pub struct PlanRank {
     pub of: usize,
     /// Those that are estimated and unobservable.
     pub unobservable: Vec<String>,
-    /// Estimated unknowns of which each, were it known, would leave all others observable.
+    /// Estimated unknowns of which each, were it measured too, would make all others observable.
     pub cures: Vec<String>,
 }
 
@@ -202,25 +202,29 @@ impl Experiment {
         least
     }
 
-    /// Columns that drive the model and have one value at the beginning or the end, for a good part of the samples and not for all.
+    /// Columns that are constants of the model at the beginning or the end, for a good part of the samples and not for all: by the same rule as for all of them.
     fn steady_for_a_while(&self, known: &BTreeMap<String, f64>) -> Vec<SteadyStretch> {
         let times = self.signals.times();
         let mut found = Vec::new();
         for (place, name) in self.signals.names().iter().enumerate() {
-            let is_met = self.system.find_symbol(name).is_some();
-            if !is_met || known.contains_key(name) {
+            if self.system.find_symbol(name).is_none() || known.contains_key(name) {
                 continue;
             }
             let column = self.signals.column(place);
-            let alike = |value: f64, rows: &mut dyn Iterator<Item = &f64>| {
-                rows.take_while(|other| **other == value).count()
-            };
             let (Some(first), Some(last)) = (column.first(), column.last()) else { continue };
-            let (ahead, behind) = (alike(*first, &mut column.iter()), alike(*last, &mut column.iter().rev()));
-            for (count, value, from) in [(ahead, *first, 0), (behind, *last, column.len() - behind)] {
-                if count < column.len() && count as f64 >= WORTH_TELLING * column.len() as f64 {
-                    let to = times[from + count - 1];
-                    found.push(SteadyStretch { name: name.clone(), from: times[from], to, value });
+            let ahead = column.iter().take_while(|value| *value == first).count();
+            let behind = column.iter().rev().take_while(|value| *value == last).count();
+            for rows in [0..ahead, column.len() - behind..column.len()] {
+                let is_a_part = !rows.is_empty() && rows.len() < column.len();
+                if !is_a_part || (rows.len() as f64) < WORTH_TELLING * column.len() as f64 {
+                    continue;
+                }
+                let part = self.signals.clone().showing(rows.clone());
+                let which = ConstantColumns::MeasuredToo;
+                let constant = least::constants(&self.scene, &self.system, known, &part, which);
+                if let Some(value) = constant.get(name) {
+                    let (from, to) = (times[rows.start], times[rows.end - 1]);
+                    found.push(SteadyStretch { name: name.clone(), from, to, value: *value });
                 }
             }
         }
@@ -295,7 +299,13 @@ impl Experiment {
             other.outputs.push((name.clone(), node));
             other.output_guards.push(Vec::new());
             let with = generic_answer(&other, &Assignment::new(), Ceiling::Rests);
-            if unseen(&with, &other).iter().all(|one| !names.contains(&one.as_str())) {
+            // each of them has to be shown to be observable: what is undecided is no cure
+            let is_seen = |sought: &&str| {
+                let mut all = with.unknowns.iter();
+                sought == name
+                    || all.any(|(symbol, seen)| other.symbol_name(*symbol) == *sought && *seen == Seen::Yes)
+            };
+            if names.iter().all(is_seen) {
                 cures.push(name.clone());
             }
         }

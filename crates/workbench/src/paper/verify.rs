@@ -306,7 +306,7 @@ impl Run<'_> {
         }
         if names_something(system) && has_a_rank(system) && system.time == Time::Continuous {
             let ways = || compare_ways(system, seed);
-            self.keep(place, "automatic differentiation", ways, |file, found| file.ways = Some(found));
+            self.keep(place, "automatic differentiation", ways, |file, found| file.ways = found);
         }
         if measured.trade {
             let question = TradeQuestion {

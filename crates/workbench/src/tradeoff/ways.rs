@@ -23,7 +23,8 @@ pub struct WaysAgreement {
     pub order: usize,
     /// At how many states of the sample box each.
     pub states: usize,
-    /// The largest difference of duals and of series from the graph, relative to the largest value of the derivative at these states.
+    /// The largest difference of duals and of series from the graph, relative to the largest number on the graph's way to the derivative at these states: what rounding is
+    /// measured by, also where the derivative itself vanishes.
     pub largest: [f64; 2],
 }
 
@@ -44,11 +45,16 @@ impl WaysAgreement {
     }
 }
 
-/// Compares the ways for all Lie derivatives that a system's codistribution takes.
+/// The larger one of two differences; one that is no number stays.
+fn worst(one: f64, other: f64) -> f64 {
+    if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
+}
+
+/// Compares the ways for all Lie derivatives that a system's codistribution takes; nothing where it takes none that change, or none that is short enough.
 ///
 /// # Errors
 /// In words, where the system has no Lie derivatives, or a state cannot be drawn or evaluated.
-pub fn compare_ways(system: &System, seed: u64) -> Result<WaysAgreement, String> {
+pub fn compare_ways(system: &System, seed: u64) -> Result<Option<WaysAgreement>, String> {
     let mut system = system.clone();
     let words = Codistribution::new(&mut system, &Assignment::new(), Length::UntilItStops)
         .map_err(|why| why.to_string())?;
@@ -68,6 +74,9 @@ pub fn compare_ways(system: &System, seed: u64) -> Result<WaysAgreement, String>
             values.extend(both);
         }
     }
+    if kept.is_empty() {
+        return Ok(None);
+    }
     let locus = Locus::new(&mut system, &Branch::default(), &BTreeMap::new(), &values)
         .map_err(|why| why.to_string())?;
     let mut points = Vec::new();
@@ -86,31 +95,38 @@ pub fn compare_ways(system: &System, seed: u64) -> Result<WaysAgreement, String>
         let (mut size, mut differences) = (0.0f64, [0.0f64; 2]);
         for point in &points {
             let inputs = float_inputs(program, |symbol| point.get(&symbol).copied().unwrap_or(f64::NAN));
-            let found =
-                loaded.run(&inputs, &mut Vec::new()).map_err(|failure| failure.refusal.to_string())?;
+            let mut registers = Vec::new();
+            let found = loaded.run(&inputs, &mut registers).map_err(|failure| failure.refusal.to_string())?;
             let by_duals =
                 lie_derivative_by_duals(&system, &word.fields, system.outputs[word.output].1, point)
-                    .map_err(|error| format!("{error:?}"))?;
-            size = size.max(found[0].abs());
-            for (place, other) in [by_duals, found[1]].into_iter().enumerate() {
-                // a NaN is no agreement
-                let difference = (other - found[0]).abs();
-                differences[place] =
-                    if difference <= differences[place] { differences[place] } else { difference };
+                    .map_err(|_| "the dual numbers have no value at a drawn state".to_owned())?;
+            size = registers.iter().filter(|value| value.is_finite()).fold(size, |a, b| a.max(b.abs()));
+            for (largest, other) in differences.iter_mut().zip([by_duals, found[1]]) {
+                *largest = worst(*largest, (other - found[0]).abs());
             }
         }
         for (largest, difference) in largest.iter_mut().zip(differences) {
-            let relative = if difference == 0.0 { 0.0 } else { difference / size };
-            *largest = if relative <= *largest { *largest } else { relative };
+            *largest = worst(*largest, if difference == 0.0 { 0.0 } else { difference / size });
         }
     }
     let fields = system.moving_fields().into_iter().map(|field| system.fields[field].name.clone());
-    Ok(WaysAgreement {
+    Ok(Some(WaysAgreement {
         fields: fields.collect(),
         derivatives: kept.len(),
         too_long: taken.len() - kept.len(),
         order: kept.iter().map(|word| word.fields.len()).max().unwrap_or(0),
         states: points.len(),
         largest,
-    })
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::worst;
+
+    #[test]
+    fn what_is_no_number_stays_the_worst() {
+        assert_eq!([0.0, 2.0, 1.0].into_iter().fold(0.0, worst), 2.0);
+        assert!([f64::NAN, 2.0, 1.0].into_iter().fold(0.0, worst).is_nan());
+    }
 }
