@@ -8,7 +8,7 @@ use super::monomials::Monomials;
 use palmistry_budget as budget;
 use palmistry_math::number::PrimeField;
 use std::cell::Cell;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashSet};
 
 /// A polynomial whose leading coefficient is one: monomials from the greatest one down, and coefficients in Montgomery's form.
 #[derive(Clone, Debug)]
@@ -24,6 +24,8 @@ pub(super) enum Stop {
     TimeIsUp,
     /// A matrix of so many columns.
     TooWide(usize),
+    /// A matrix with so many entries.
+    TooFull(usize),
     /// The degree that was reached.
     DegreeTooHigh(u32),
 }
@@ -31,6 +33,8 @@ pub(super) enum Stop {
 /// How far one goes.
 pub(super) struct Limits<'a> {
     pub columns: usize,
+    /// Of one matrix, in which a zero is none.
+    pub entries: usize,
     pub degree: u32,
     /// Products of residues that were done so far.
     pub work: &'a Cell<u64>,
@@ -43,17 +47,68 @@ impl Limits<'_> {
         self.work.set(self.work.get() + products);
         budget::steps(products as usize);
     }
-}
 
-/// What it costs to find a monomial, in products of residues.
-const LOOK_UP: u64 = 16;
+    /// The same for monomials that are looked up in the table: what that takes was measured to grow with the number of variables.
+    fn spend_on_monomials(&self, count: usize, monomials: &Monomials) {
+        self.spend(count as u64 * (8 + monomials.variables() as u64 / 2));
+    }
+}
 
 /// A pair of elements of the basis, by their places.
 #[derive(Clone, Copy, Debug)]
 struct Pair {
     lcm: u32,
+    degree: u32,
+    /// Of the least common multiple.
+    mask: u64,
     first: usize,
     second: usize,
+}
+
+/// No number of a monomial, of an element or of a column.
+const NONE: u32 = u32::MAX;
+
+/// What is known of the elements that divide a monomial.
+#[derive(Clone, Copy, Debug)]
+struct Divisor {
+    /// The shortest of those that were looked at, or none.
+    place: u32,
+    /// So many elements were looked at.
+    looked_at: u32,
+}
+
+/// The columns of one matrix as they are met; the table is as long as there are monomials, and used again.
+#[derive(Default)]
+struct Columns {
+    met: Vec<u32>,
+    /// Of each monomial: not met, met, met and with a row that begins with it; then its column.
+    state: Vec<u32>,
+}
+
+const NOT_MET: u32 = NONE;
+const MET: u32 = 0;
+const HAS_ROW: u32 = 1;
+
+impl Columns {
+    fn make_room(&mut self, monomials: usize) {
+        self.state.resize(monomials.max(self.state.len()), NOT_MET);
+    }
+
+    fn meet(&mut self, row: &Row) {
+        for monomial in &row.monomials {
+            let state = &mut self.state[*monomial as usize];
+            if *state == NOT_MET {
+                *state = MET;
+                self.met.push(*monomial);
+            }
+        }
+    }
+
+    fn clear(&mut self) {
+        for monomial in self.met.drain(..) {
+            self.state[monomial as usize] = NOT_MET;
+        }
+    }
 }
 
 /// A basis as it grows.
@@ -63,7 +118,12 @@ pub(super) struct Basis {
     elements: Vec<Row>,
     /// Those whose leading monomials no other one divides.
     active: Vec<bool>,
+    /// Of each element the mask of its leading monomial.
+    masks: Vec<u64>,
+    /// By monomial.
+    divisors: Vec<Divisor>,
     pairs: Vec<Pair>,
+    columns: Columns,
 }
 
 impl Basis {
@@ -74,8 +134,16 @@ impl Basis {
         rows: Vec<Row>,
         limits: &Limits,
     ) -> Result<Basis, Stop> {
-        let mut basis =
-            Basis { field, monomials, elements: Vec::new(), active: Vec::new(), pairs: Vec::new() };
+        let mut basis = Basis {
+            field,
+            monomials,
+            elements: Vec::new(),
+            active: Vec::new(),
+            masks: Vec::new(),
+            divisors: Vec::new(),
+            pairs: Vec::new(),
+            columns: Columns::default(),
+        };
         let mut waiting: BTreeMap<u32, Vec<Row>> = BTreeMap::new();
         for row in rows {
             if let Some(lead) = row.monomials.first() {
@@ -83,7 +151,7 @@ impl Basis {
             }
         }
         loop {
-            let of_pairs = basis.pairs.iter().map(|pair| basis.monomials.degree(pair.lcm)).min();
+            let of_pairs = basis.pairs.iter().map(|pair| pair.degree).min();
             let of_rows = waiting.keys().next().copied();
             let Some(degree) = of_pairs.into_iter().chain(of_rows).min() else { return Ok(basis) };
             if degree > limits.degree {
@@ -95,7 +163,11 @@ impl Basis {
             let generators = if of_rows == Some(degree) { waiting.remove(&degree) } else { None };
             let found = basis.reduced(degree, generators.unwrap_or_default(), limits)?;
             for row in found {
+                limits.spend_on_monomials(basis.elements.len(), &basis.monomials);
                 basis.insert(row);
+                if (limits.is_over)() {
+                    return Err(Stop::TimeIsUp);
+                }
             }
             if basis.is_everything() {
                 return Ok(basis);
@@ -116,12 +188,28 @@ impl Basis {
 
     /// The rows of one matrix, reduced: those whose leading monomials are new.
     fn reduced(&mut self, degree: u32, generators: Vec<Row>, limits: &Limits) -> Result<Vec<Row>, Stop> {
-        let (now, later): (Vec<Pair>, Vec<Pair>) =
-            self.pairs.iter().partition(|pair| self.monomials.degree(pair.lcm) == degree);
+        let mut columns = std::mem::take(&mut self.columns);
+        let found = self.reduced_in(&mut columns, degree, generators, limits);
+        columns.clear();
+        self.columns = columns;
+        found
+    }
+
+    fn reduced_in(
+        &mut self,
+        columns: &mut Columns,
+        degree: u32,
+        generators: Vec<Row>,
+        limits: &Limits,
+    ) -> Result<Vec<Row>, Stop> {
+        let (now, later): (Vec<Pair>, Vec<Pair>) = self.pairs.iter().partition(|pair| pair.degree == degree);
         self.pairs = later;
         let mut reducers: Vec<Row> = Vec::new();
-        let mut has_reducer: HashSet<u32> = HashSet::new();
         let mut rows: Vec<Row> = generators;
+        for row in &rows {
+            columns.make_room(self.monomials.len());
+            columns.meet(row);
+        }
         let mut taken: HashSet<(u32, usize)> = HashSet::new();
         for pair in now {
             for place in [pair.first, pair.second] {
@@ -129,59 +217,66 @@ impl Basis {
                     continue;
                 }
                 let row = self.multiple(place, pair.lcm, limits);
-                if has_reducer.insert(pair.lcm) { reducers.push(row) } else { rows.push(row) }
+                columns.make_room(self.monomials.len());
+                columns.meet(&row);
+                let state = &mut columns.state[pair.lcm as usize];
+                if *state == HAS_ROW {
+                    rows.push(row);
+                } else {
+                    *state = HAS_ROW;
+                    reducers.push(row);
+                }
             }
         }
+        let mut entries: usize = reducers.iter().chain(&rows).map(|row| row.monomials.len()).sum();
         // every monomial that an element divides is to be reduced
-        let mut met: HashSet<u32> = HashSet::new();
-        let mut waiting: Vec<u32> = Vec::new();
-        let meet = |met: &mut HashSet<u32>, waiting: &mut Vec<u32>, row: &Row| {
-            waiting.extend(row.monomials.iter().copied().filter(|monomial| met.insert(*monomial)));
-        };
-        for row in reducers.iter().chain(&rows) {
-            meet(&mut met, &mut waiting, row);
-        }
-        while let Some(monomial) = waiting.pop() {
-            if met.len() > limits.columns {
-                return Err(Stop::TooWide(met.len()));
+        let mut next = 0;
+        while let Some(monomial) = columns.met.get(next).copied() {
+            next += 1;
+            if columns.met.len() > limits.columns {
+                return Err(Stop::TooWide(columns.met.len()));
             }
-            if (limits.is_over)() {
+            if entries > limits.entries {
+                return Err(Stop::TooFull(entries));
+            }
+            if next % 256 == 0 && (limits.is_over)() {
                 return Err(Stop::TimeIsUp);
             }
-            if has_reducer.contains(&monomial) {
+            if columns.state[monomial as usize] == HAS_ROW {
                 continue;
             }
             if let Some(place) = self.divisor(monomial) {
                 let row = self.multiple(place, monomial, limits);
-                meet(&mut met, &mut waiting, &row);
-                has_reducer.insert(monomial);
+                entries += row.monomials.len();
+                columns.make_room(self.monomials.len());
+                columns.meet(&row);
+                columns.state[monomial as usize] = HAS_ROW;
                 reducers.push(row);
             }
         }
-        self.eliminated(met, &reducers, rows, limits)
+        self.eliminated(columns, reducers, rows, limits)
     }
 
     /// Elimination with one dense row at a time.
     fn eliminated(
         &self,
-        met: HashSet<u32>,
-        reducers: &[Row],
+        columns: &mut Columns,
+        reducers: Vec<Row>,
         mut rows: Vec<Row>,
         limits: &Limits,
     ) -> Result<Vec<Row>, Stop> {
         let field = &self.field;
-        let mut columns: Vec<u32> = met.into_iter().collect();
-        columns.sort_by(|a, b| self.monomials.compare(*b, *a));
-        let place: HashMap<u32, u32> =
-            columns.iter().zip(0..).map(|(monomial, place)| (*monomial, place)).collect();
-        let placed = |row: &Row| -> (Vec<u32>, Vec<u64>) {
-            (row.monomials.iter().map(|monomial| place[monomial]).collect(), row.coefficients.clone())
-        };
+        let Columns { met: columns, state: place } = columns;
+        columns.sort_unstable_by(|a, b| self.monomials.compare(*b, *a));
+        for (monomial, column) in columns.iter().zip(0..) {
+            place[*monomial as usize] = column;
+        }
+        let places = |row: &Row| row.monomials.iter().map(|monomial| place[*monomial as usize]).collect();
         let mut pivots: Vec<Option<(Vec<u32>, Vec<u64>)>> = vec![None; columns.len()];
         for row in reducers {
-            let row = placed(row);
-            let lead = row.0[0] as usize;
-            pivots[lead] = Some(row);
+            let places: Vec<u32> = places(&row);
+            let lead = places[0] as usize;
+            pivots[lead] = Some((places, row.coefficients));
         }
         rows.sort_by(|a, b| self.monomials.compare(a.monomials[0], b.monomials[0]));
         let bound = u128::from(field.modulus()) << 64;
@@ -191,11 +286,11 @@ impl Basis {
             if (limits.is_over)() {
                 return Err(Stop::TimeIsUp);
             }
-            let (places, coefficients) = placed(&row);
-            let first = places[0] as usize;
-            for (place, coefficient) in places.iter().zip(coefficients) {
+            let first = place[row.monomials[0] as usize] as usize;
+            for (monomial, coefficient) in row.monomials.iter().zip(&row.coefficients) {
                 // as a product with one, in the form in which products are summed
-                dense[*place as usize] = u128::from(coefficient) * u128::from(field.one());
+                let column = place[*monomial as usize] as usize;
+                dense[column] = u128::from(*coefficient) * u128::from(field.one());
             }
             let (mut kept_places, mut kept) = (Vec::new(), Vec::new());
             let mut work = columns.len() as u64 / 4;
@@ -243,8 +338,7 @@ impl Basis {
     /// An element times what its leading monomial lacks.
     fn multiple(&mut self, place: usize, lead: u32, limits: &Limits) -> Row {
         let row = &self.elements[place];
-        // to find a monomial in the table takes as long as some products
-        limits.spend(LOOK_UP * row.monomials.len() as u64);
+        limits.spend_on_monomials(row.monomials.len(), &self.monomials);
         let factor = self.monomials.quotient(lead, row.monomials[0]);
         let monomials =
             row.monomials.iter().map(|monomial| self.monomials.product(*monomial, factor)).collect();
@@ -252,56 +346,79 @@ impl Basis {
     }
 
     /// An element whose leading monomial divides this one: the shortest.
-    fn divisor(&self, monomial: u32) -> Option<usize> {
-        let divides = |place: &usize| {
-            self.active[*place] && self.monomials.divides(self.elements[*place].monomials[0], monomial)
-        };
-        (0..self.elements.len()).filter(divides).min_by_key(|place| self.elements[*place].monomials.len())
+    fn divisor(&mut self, monomial: u32) -> Option<usize> {
+        let not_looked = Divisor { place: NONE, looked_at: 0 };
+        if self.divisors.len() <= monomial as usize {
+            self.divisors.resize(self.monomials.len(), not_looked);
+        }
+        let known = self.divisors[monomial as usize];
+        // what divided it before it was superseded was so by an element that came later
+        let mut best = Some(known.place as usize).filter(|place| known.place != NONE && self.active[*place]);
+        let (absent, length) =
+            (!self.monomials.mask(monomial), |place: usize| self.elements[place].monomials.len());
+        for place in known.looked_at as usize..self.elements.len() {
+            if self.masks[place] & absent == 0
+                && self.active[place]
+                && best.is_none_or(|best| length(place) < length(best))
+                && self.monomials.divides(self.elements[place].monomials[0], monomial)
+            {
+                best = Some(place);
+            }
+        }
+        self.divisors[monomial as usize] =
+            Divisor { place: best.map_or(NONE, |place| place as u32), looked_at: self.elements.len() as u32 };
+        best
     }
 
     /// One element more, with the pairs that have to be looked at (Gebauer and Moeller's criteria).
     fn insert(&mut self, row: Row) {
         let lead = row.monomials[0];
+        let mask = self.monomials.mask(lead);
         // what was found in the same matrix may divide it by now: then the pair of the two is all that is needed of it
         let is_needed = self.divisor(lead).is_none();
         let new = self.elements.len();
-        let mut fresh: Vec<(u32, usize, bool)> = Vec::new();
+        // by degree, so that what divides comes first; of equals a coprime one before others
+        let mut fresh: Vec<(u32, u32, bool, usize)> = Vec::new();
         for place in 0..new {
             if self.active[place] {
                 let other = self.elements[place].monomials[0];
-                let coprime = self.monomials.are_coprime(lead, other);
-                fresh.push((self.monomials.lcm(lead, other), place, coprime));
+                let has_common_factor = !self.monomials.are_coprime(lead, other);
+                let lcm = self.monomials.lcm(lead, other);
+                fresh.push((self.monomials.degree(lcm), lcm, has_common_factor, place));
             }
         }
-        let mut kept_pairs = Vec::new();
-        for pair in std::mem::take(&mut self.pairs) {
-            let with = |monomials: &mut Monomials, place: usize| {
-                monomials.lcm(lead, self.elements[place].monomials[0]) == pair.lcm
-            };
-            let is_needed = !self.monomials.divides(lead, pair.lcm)
-                || with(&mut self.monomials, pair.first)
-                || with(&mut self.monomials, pair.second);
-            if is_needed {
-                kept_pairs.push(pair);
+        let (monomials, elements) = (&self.monomials, &self.elements);
+        let with = |place: usize, lcm: u32| monomials.is_lcm(lead, elements[place].monomials[0], lcm);
+        self.pairs.retain(|pair| {
+            mask & !pair.mask != 0
+                || !monomials.divides(lead, pair.lcm)
+                || with(pair.first, pair.lcm)
+                || with(pair.second, pair.lcm)
+        });
+        fresh.sort_unstable();
+        let mut kept: Vec<(u32, u32, bool, usize)> = Vec::new();
+        for pair in fresh {
+            // a smaller one that divides it makes it superfluous
+            if !kept.iter().any(|(_, other, ..)| self.monomials.divides(*other, pair.1)) {
+                kept.push(pair);
             }
         }
-        fresh.sort_by(|a, b| self.monomials.compare(a.0, b.0).then(b.2.cmp(&a.2)));
-        let mut kept: Vec<(u32, usize, bool)> = Vec::new();
-        for (lcm, place, coprime) in fresh {
-            // a smaller one that divides it makes it superfluous; of equals the first, a coprime one before others
-            if !kept.iter().any(|(other, ..)| self.monomials.divides(*other, lcm)) {
-                kept.push((lcm, place, coprime));
+        for (degree, lcm, has_common_factor, place) in kept {
+            if has_common_factor {
+                let mask = self.monomials.mask(lcm);
+                self.pairs.push(Pair { lcm, degree, mask, first: place, second: new });
             }
         }
-        let needed = kept.into_iter().filter(|(_, _, coprime)| !coprime);
-        kept_pairs.extend(needed.map(|(lcm, place, _)| Pair { lcm, first: place, second: new }));
-        self.pairs = kept_pairs;
         for place in 0..new {
-            if self.active[place] && self.monomials.divides(lead, self.elements[place].monomials[0]) {
+            if mask & !self.masks[place] == 0
+                && self.active[place]
+                && self.monomials.divides(lead, self.elements[place].monomials[0])
+            {
                 self.active[place] = false;
             }
         }
         self.elements.push(row);
         self.active.push(is_needed);
+        self.masks.push(mask);
     }
 }

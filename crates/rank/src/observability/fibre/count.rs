@@ -32,7 +32,7 @@ pub(super) fn count(
         orders.last.fill(longest);
     }
     answer.orders = orders.last.clone();
-    let course = Course { work: Cell::new(0), by_level: Cell::new(None) };
+    let course = Course { work: Cell::new(0), way: Cell::new(None) };
     let mut best: Option<Round> = None;
     let mut wanted = LEAST_ROUNDS;
     while answer.rounds < wanted {

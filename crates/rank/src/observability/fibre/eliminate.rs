@@ -8,14 +8,21 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 pub(super) struct Solved {
     pub equations: Vec<Jet>,
     pub solved: HashMap<u32, Jet>,
+    highest_degree: u32,
 }
 
 /// A polynomial may grow to so many terms.
 const LONGEST: usize = 3_000;
 
 impl Solved {
-    pub fn new(field: &PrimeField, equations: Vec<Jet>, is_over: &dyn Fn() -> bool) -> Solved {
-        let mut solved = Solved { equations, solved: HashMap::new() };
+    /// Solves equations up to a degree, the others stay.
+    pub fn new(
+        field: &PrimeField,
+        equations: Vec<Jet>,
+        highest_degree: u32,
+        is_over: &dyn Fn() -> bool,
+    ) -> Solved {
+        let mut solved = Solved { equations, solved: HashMap::new(), highest_degree };
         loop {
             solved.equations.retain(|equation| !equation.is_zero());
             solved.put_numbers_in(field);
@@ -64,6 +71,9 @@ impl Solved {
         }
         let mut best: Option<(usize, usize, u32)> = None;
         for (place, equation) in self.equations.iter().enumerate() {
+            if equation.degree() > self.highest_degree {
+                continue;
+            }
             for variable in alone_and_linear(equation) {
                 let elsewhere = occurrences[&variable] - 1;
                 let length = equation.terms.len() - 1;

@@ -20,7 +20,9 @@ const ATTEMPTS: usize = 20;
 /// No more points are counted.
 const MOST_POINTS: usize = 600;
 /// The widest matrix.
-const MOST_COLUMNS: usize = 60_000;
+const MOST_COLUMNS: usize = 200_000;
+/// The fullest: its rows take twelve bytes an entry, some gigabyte.
+const MOST_ENTRIES: usize = 80_000_000;
 const HIGHEST_DEGREE: u32 = 120;
 
 /// What one round shows.
@@ -31,7 +33,67 @@ pub(super) struct Round {
     pub polynomials: Vec<Vec<u64>>,
 }
 
+/// One of the ways to a basis, none of which is the best one always.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Way {
+    /// So many derivatives of each output are taken beyond those that tell all. They add nothing to what is known, but with more equations
+    /// than unknowns a basis is found at lower degrees: MAP kinases with five outputs take seconds with some more, and no time suffices
+    /// without.
+    pub further: usize,
+    pub form: Form,
+}
+
+/// How the equations are brought before a basis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    /// All that can be solved in a few terms is solved, and all variables count the same.
+    Short,
+    /// Linear equations alone are solved, so that the others keep their low degrees, and what moves counts the more the farther it is from the
+    /// outputs.
+    ///
+    /// Reference: M. Bessonov, I. Ilmer, T. Konstantinova, A. Ovchinnikov, G. Pogudin and P. Soto, *Obtaining weights for Groebner basis
+    /// computation in parameter identifiability problems*, arXiv 2202.06297; weights twice theirs were measured to be better.
+    Graded,
+}
+
+/// What decides small systems at once.
+const FIRST: Way = Way { further: 0, form: Form::Short };
+
+/// In the order in which they are tried then.
+const WAYS: [Way; 8] = [
+    Way { further: 4, form: Form::Graded },
+    Way { further: 8, form: Form::Graded },
+    Way { further: 6, form: Form::Short },
+    Way { further: 12, form: Form::Graded },
+    Way { further: 12, form: Form::Short },
+    FIRST,
+    Way { further: 0, form: Form::Graded },
+    Way { further: 24, form: Form::Graded },
+];
+
+/// The shares of all work that are spent on one try, as their inverses: little first, then more.
+const SHARES: [u64; 3] = [1000, 100, 10];
+
+/// What is done so far.
+pub(super) struct Course {
+    /// In products of residues.
+    pub work: Cell<u64>,
+    /// The way that led to a basis first.
+    pub way: Cell<Option<Way>>,
+}
+
+/// Why a round has no answer.
+pub(super) enum NoRound {
+    /// Another way may have one, or more work.
+    Stopped(String),
+    /// No way has.
+    Failed(String),
+}
+
 /// The fibre through one random point.
+///
+/// # Errors
+/// In words, where all ways are too much work.
 pub(super) fn round(
     model: &Model,
     orders: &Orders,
@@ -39,20 +101,54 @@ pub(super) fn round(
     course: &Course,
     rng: &mut ChaCha8Rng,
 ) -> Result<Round, String> {
-    let mut met = None;
+    let tries: Vec<(Way, u64)> = match course.way.get() {
+        Some(way) => vec![(way, 1)],
+        None => {
+            let later = SHARES.into_iter().flat_map(|share| WAYS.map(|way| (way, share)));
+            std::iter::once((FIRST, SHARES[0])).chain(later).collect()
+        }
+    };
+    let mut stopped = String::new();
+    for (way, share) in tries {
+        let end = (course.work.get() + question.work / share).min(question.work);
+        let fibre = match random_fibre(model, &orders.and_further(way.further), rng) {
+            Ok(fibre) => fibre,
+            // what is too long with more derivatives may do without
+            Err(NoRound::Stopped(why)) if way.further > 0 => {
+                stopped = why;
+                continue;
+            }
+            Err(NoRound::Stopped(why) | NoRound::Failed(why)) => return Err(why),
+        };
+        match analysed(model, fibre, question, course, (way, end), rng) {
+            Ok(round) => {
+                course.way.set(Some(way));
+                return Ok(round);
+            }
+            Err(NoRound::Failed(why)) => return Err(why),
+            Err(NoRound::Stopped(_)) if question.interrupt.load(Ordering::Relaxed) => {
+                return Err("it was cut off".to_owned());
+            }
+            Err(NoRound::Stopped(why)) if course.work.get() > question.work => {
+                return Err(format!("{why} after {:.0e} products", question.work as f64));
+            }
+            Err(NoRound::Stopped(why)) => stopped = why,
+        }
+    }
+    Err(stopped)
+}
+
+/// A random point that is no pole, and its fibre.
+fn random_fibre(model: &Model, orders: &Orders, rng: &mut ChaCha8Rng) -> Result<Fibre, NoRound> {
     for _ in 0..ATTEMPTS {
         let field = PrimeField::random(rng);
         match Fibre::new(model, orders, field, &mut Source { rng, given: HashMap::new() }) {
-            Ok(fibre) => {
-                met = Some(fibre);
-                break;
-            }
+            Ok(fibre) => return Ok(fibre),
             Err(Trouble::Pole) => {}
-            Err(Trouble::TooLarge(why)) => return Err(why),
+            Err(Trouble::TooLarge(why)) => return Err(NoRound::Stopped(why)),
         }
     }
-    let Some(fibre) = met else { return Err(format!("{ATTEMPTS} random points were poles")) };
-    analysed(model, fibre, question, course, rng)
+    Err(NoRound::Failed(format!("{ATTEMPTS} random points were poles")))
 }
 
 /// What nobody should ever read.
@@ -64,28 +160,37 @@ pub(super) fn analysed(
     fibre: Fibre,
     question: &SolutionsQuestion,
     course: &Course,
+    (way, end): (Way, u64),
     rng: &mut ChaCha8Rng,
-) -> Result<Round, String> {
-    let is_over = || question.interrupt.load(Ordering::Relaxed) || course.work.get() > question.work;
+) -> Result<Round, NoRound> {
+    let is_over = || question.interrupt.load(Ordering::Relaxed) || course.work.get() > end;
+    let failed = |why: &str| NoRound::Failed(why.to_owned());
     let field = fibre.field;
-    let solved = Solved::new(&field, fibre.equations, &is_over);
+    let highest_degree = match way.form {
+        Form::Short => u32::MAX,
+        Form::Graded => 1,
+    };
+    let solved = Solved::new(&field, fibre.equations, highest_degree, &is_over);
     let variables = solved.variables();
     // derivatives of high order are the greatest
     let place: HashMap<u32, usize> = variables.iter().rev().copied().zip(0..).collect();
-    let basis = basis_of(model, question, &solved, &place, field, course)?;
+    let basis = basis_of(model, &solved, &place, field, way, &course.work, &is_over)?;
     let mut algebra = Algebra::new(basis, MOST_POINTS).map_err(|why| match why {
-        NoAlgebra::Infinite => "the fibre of a random point is not finite".to_owned(),
-        NoAlgebra::MoreThan(most) => format!("more than {most} states and constants give the same outputs"),
+        NoAlgebra::Infinite => failed("the fibre of a random point is not finite"),
+        NoAlgebra::MoreThan(most) => {
+            failed(&format!("more than {most} states and constants give the same outputs"))
+        }
     })?;
     if algebra.dimension() == 0 {
-        return Err(ASTRAY.to_owned());
+        return Err(failed(ASTRAY));
     }
-    let mut minimal = |jet: Jet| -> Result<Vec<u64>, String> {
+    let mut minimal = |jet: Jet| -> Result<Vec<u64>, NoRound> {
         let mut polynomial = Vec::new();
         for (monomial, coefficient) in &jet.terms {
             let powers: Option<Vec<(usize, u16)>> =
                 monomial.iter().map(|(variable, power)| Some((*place.get(variable)?, *power))).collect();
-            let powers = powers.ok_or("the fibre of a random point leaves an unknown open")?;
+            let powers =
+                powers.ok_or_else(|| failed("the fibre of a random point leaves an unknown open"))?;
             polynomial.push((powers, *coefficient));
         }
         if polynomial.iter().all(|(powers, _)| powers.is_empty()) {
@@ -112,7 +217,7 @@ pub(super) fn analysed(
     for (polynomial, own) in &polynomials {
         let value = polynomial.iter().rev().fold(0, |sum, c| field.sum(field.product(sum, *own), *c));
         if value != 0 {
-            return Err(ASTRAY.to_owned());
+            return Err(failed(ASTRAY));
         }
     }
     let polynomials: Vec<Vec<u64>> = polynomials.into_iter().map(|(polynomial, _)| polynomial).collect();
@@ -120,95 +225,57 @@ pub(super) fn analysed(
     Ok(Round { points: algebra.dimension(), values, polynomials })
 }
 
-/// What is done so far.
-pub(super) struct Course {
-    /// In products of residues.
-    pub work: Cell<u64>,
-    /// Whether the weights that led to a basis first were those of levels.
-    pub by_level: Cell<Option<bool>>,
-}
-
-/// The basis, by the first weights that lead to one: all are one, or they grow with the distance from the outputs. None is the
-/// better one always,
-/// so both are tried with little work and then with more.
-///
-/// # Errors
-/// In words, where all is too much.
+/// The basis, one way.
 fn basis_of(
     model: &Model,
-    question: &SolutionsQuestion,
     solved: &Solved,
     place: &HashMap<u32, usize>,
     field: PrimeField,
-    course: &Course,
-) -> Result<Basis, String> {
+    way: Way,
+    work: &Cell<u64>,
+    is_over: &dyn Fn() -> bool,
+) -> Result<Basis, NoRound> {
+    let limits =
+        Limits { columns: MOST_COLUMNS, entries: MOST_ENTRIES, degree: HIGHEST_DEGREE, work, is_over };
+    let mut monomials = Monomials::new(weights(model, place, way.form));
+    let rows = solved.equations.iter().map(|equation| row(equation, place, &mut monomials)).collect();
+    Basis::of(field, monomials, rows, &limits).map_err(|stop| {
+        let sizes = format!("{} equations in {} variables", solved.equations.len(), place.len());
+        NoRound::Stopped(match stop {
+            Stop::TimeIsUp => format!("the Groebner basis of {sizes} was not reached"),
+            Stop::TooWide(columns) => {
+                format!("the Groebner basis of {sizes} needs a matrix of {columns} columns and more")
+            }
+            Stop::TooFull(entries) => {
+                format!("the Groebner basis of {sizes} needs a matrix of {entries} entries and more")
+            }
+            Stop::DegreeTooHigh(degree) => {
+                format!("the Groebner basis of {sizes} needs polynomials of degree {degree}")
+            }
+        })
+    })
+}
+
+/// The weights of variables, by their places among the monomials: what a variable counts in the degree by which a basis is sorted.
+fn weights(model: &Model, place: &HashMap<u32, usize>, form: Form) -> Vec<u32> {
+    let mut weights = vec![1; place.len()];
+    if form == Form::Short {
+        return weights;
+    }
     let stride = Numbering { variables: model.variables.len(), asked: model.asked.len() }.stride();
     let levels = levels(model);
     let most = levels.iter().copied().max().unwrap_or(0);
-    let weights = |by_level: bool| {
-        let mut weights = vec![1; place.len()];
-        for (variable, place) in place {
-            let variable = (variable % stride) as usize;
-            weights[*place] = match model.variables.get(variable).map(|variable| &variable.motion) {
-                _ if !by_level => 1,
-                None => most + 2,
-                Some(Motion::Rests) => 1,
-                Some(_) => levels[variable] + 1,
-            };
-        }
-        weights
-    };
-    let sizes = || format!("{} equations in {} variables", solved.equations.len(), place.len());
-    let mut stopped = String::new();
-    for share in SHARES {
-        for by_level in [false, true] {
-            if course.by_level.get().is_some_and(|known| known != by_level) {
-                continue;
-            }
-            let end = (course.work.get() + question.work / share).min(question.work);
-            let is_over = || question.interrupt.load(Ordering::Relaxed) || course.work.get() > end;
-            let limits = Limits {
-                columns: MOST_COLUMNS,
-                degree: HIGHEST_DEGREE,
-                work: &course.work,
-                is_over: &is_over,
-            };
-            let mut monomials = Monomials::new(weights(by_level));
-            let rows = solved.equations.iter().map(|equation| row(equation, place, &mut monomials)).collect();
-            match Basis::of(field, monomials, rows, &limits) {
-                Ok(basis) => {
-                    course.by_level.set(Some(by_level));
-                    return Ok(basis);
-                }
-                Err(_) if question.interrupt.load(Ordering::Relaxed) => {
-                    return Err("it was cut off".to_owned());
-                }
-                Err(Stop::TimeIsUp) if course.work.get() > question.work => {
-                    return Err(format!(
-                        "the Groebner basis of {} takes more than {:.0e} products",
-                        sizes(),
-                        question.work as f64
-                    ));
-                }
-                Err(Stop::TimeIsUp) => stopped = format!("the Groebner basis of {} takes too long", sizes()),
-                Err(Stop::TooWide(columns)) => {
-                    stopped = format!(
-                        "the Groebner basis of {} needs a matrix of {columns} columns and more",
-                        sizes()
-                    );
-                }
-                Err(Stop::DegreeTooHigh(degree)) => {
-                    stopped =
-                        format!("the Groebner basis of {} needs polynomials of degree {degree}", sizes());
-                }
-            }
-        }
+    for (variable, place) in place {
+        let variable = (variable % stride) as usize;
+        weights[*place] = match model.variables.get(variable).map(|variable| &variable.motion) {
+            // the inverse of a denominator, or an expression that is asked for
+            None => most + 2,
+            Some(Motion::Rests) => 1,
+            Some(_) => 2 * (levels[variable] + 1),
+        };
     }
-    Err(stopped)
+    weights
 }
-
-/// The shares of all work that are spent on one try, as their inverses.
-const SHARES: [u64; 3] = [100, 10, 2];
 
 /// A polynomial as a row of a basis.
 fn row(equation: &Jet, place: &HashMap<u32, usize>, monomials: &mut Monomials) -> Row {

@@ -48,6 +48,8 @@ fn attempt(
     rng: &mut ChaCha8Rng,
 ) -> Option<SecondPoint> {
     let numbering = Numbering { variables: model.variables.len(), asked: model.asked.len() };
+    let way = course.way.get()?;
+    let orders = &orders.and_further(way.further);
     let deepest = orders.last.iter().copied().max()? + FURTHER;
     let mut given: HashMap<u32, i64> = HashMap::new();
     for (place, variable) in model.variables.iter().enumerate() {
@@ -61,7 +63,7 @@ fn attempt(
     for _ in 0..PRIMES {
         let field = PrimeField::random(rng);
         let fibre = Fibre::new(model, orders, field, &mut Source { rng, given: given.clone() }).ok()?;
-        let round = analysed(model, fibre, question, course, rng).ok()?;
+        let round = analysed(model, fibre, question, course, (way, question.work), rng).ok()?;
         if round.points != 2 {
             return None;
         }

@@ -24,7 +24,7 @@ fn algebra(variables: usize, polynomials: &[Terms]) -> Result<Algebra, NoAlgebra
         rows.push(Row { monomials, coefficients });
     }
     let work = Cell::new(0);
-    let limits = Limits { columns: 10_000, degree: 50, work: &work, is_over: &|| false };
+    let limits = Limits { columns: 10_000, entries: 1_000_000, degree: 50, work: &work, is_over: &|| false };
     Algebra::new(Basis::of(field, monomials, rows, &limits).unwrap(), 200)
 }
 

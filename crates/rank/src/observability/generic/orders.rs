@@ -21,6 +21,13 @@ pub(crate) struct Orders {
     pub free: Vec<usize>,
 }
 
+impl Orders {
+    /// With further derivatives of each output.
+    pub(crate) fn and_further(&self, further: usize) -> Orders {
+        Orders { last: self.last.iter().map(|last| last + further).collect(), ..self.clone() }
+    }
+}
+
 impl Probe {
     /// The orders at a random point.
     ///
