@@ -89,7 +89,7 @@ def solutions(binary, path, limit):
     took = f"{figures(time.monotonic() - begin)} s"
     if run.returncode not in (0, 3):
         return "refused"
-    seen = [one for one in json.loads(run.stdout)["unknowns"] if "not" not in one["local"]]
+    seen = [one for one in json.loads(run.stdout)["unknowns"] if is_seen(one["local"])]
     if not seen:
         return "nothing is seen"
     if any(not isinstance(one["values"], int) for one in seen):
@@ -149,7 +149,7 @@ def main():
 
 def table(report):
     lines = [
-        "| model | unknowns | rank | not seen | claims | all claims, s | rank, s | StrikePy, s | global |",
+        "| model | unknowns | rank | unobservable | claims | all claims, s | rank, s | StrikePy, s | global |",
         "|---|---:|---:|---:|---:|---:|---:|---:|---|",
     ]
     for point in sorted(report["models"], key=lambda point: (not point["has_claims"], point["model"])):

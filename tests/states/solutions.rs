@@ -10,8 +10,10 @@ use std::sync::atomic::AtomicBool;
 
 /// As much work as a test may be.
 const WORK: u64 = 4_000_000;
+/// As much as one of the published models may be.
+const WORK_OF_A_MODEL: u64 = 400_000_000;
 /// Larger models are left to the table in the book.
-const MOST_UNKNOWNS: usize = 15;
+const MOST_UNKNOWNS: usize = 40;
 
 fn read(text: &str) -> System {
     format!("system \"s\" {text}").parse().unwrap()
@@ -202,7 +204,7 @@ fn published_numbers_of_values() {
         }
         let expressions: Vec<String> =
             wanted.keys().filter(|text| system.find_symbol(text).is_none()).cloned().collect();
-        let found = ask(&system, &expressions, WORK);
+        let found = ask(&system, &expressions, WORK_OF_A_MODEL);
         let mut is_open = false;
         for of_it in &found {
             match (&of_it.solutions, wanted.get(&of_it.name)) {
@@ -220,5 +222,5 @@ fn published_numbers_of_values() {
         if is_open { open.push(name.as_str()) } else { decided += 1 }
     }
     println!("{decided} models as published; too much work here: {open:?}");
-    assert!(decided >= 20, "{decided}; {open:?}");
+    assert!(decided >= 31, "{decided}; {open:?}");
 }

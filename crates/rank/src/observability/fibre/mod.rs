@@ -2,8 +2,8 @@
 //!
 //! The outputs of almost every state, as functions of time and of known inputs, are met by the states and constants of a
 //! *fibre*. At a random point modulo a random prime
-//! its equations are written down: `Q x' = P` and the outputs, differentiated along time as often as tells all
-//! , with the derivatives of the outputs that the point has. Unknowns that are not even locally determined are held as far as
+//! its equations are written down: `Q x' = P` and the outputs, differentiated along time as often as tells all or some times more ([`round`]),
+//! with the derivatives of the outputs that the point has. Unknowns that are not even locally determined are held as far as
 //! that makes the fibre finite, which leaves the number of values of
 //! the others what it is. What can be solved is solved ([`eliminate`]), of the rest a Groebner basis is found ([`basis`]), and
 //! each unknown's minimal polynomial in the quotient

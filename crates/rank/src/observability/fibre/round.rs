@@ -60,7 +60,7 @@ pub(super) enum Form {
 const FIRST: Way = Way { further: 0, form: Form::Short };
 
 /// In the order in which they are tried then.
-const WAYS: [Way; 8] = [
+pub(super) const WAYS: [Way; 8] = [
     Way { further: 4, form: Form::Graded },
     Way { further: 8, form: Form::Graded },
     Way { further: 6, form: Form::Short },
@@ -73,6 +73,8 @@ const WAYS: [Way; 8] = [
 
 /// The shares of all work that are spent on one try, as their inverses: little first, then more.
 const SHARES: [u64; 3] = [1000, 100, 10];
+/// A try with less work than this says little.
+const LEAST_WORK: u64 = 1_000_000;
 
 /// What is done so far.
 pub(super) struct Course {
@@ -110,7 +112,7 @@ pub(super) fn round(
     };
     let mut stopped = String::new();
     for (way, share) in tries {
-        let end = (course.work.get() + question.work / share).min(question.work);
+        let end = (course.work.get() + (question.work / share).max(LEAST_WORK)).min(question.work);
         let fibre = match random_fibre(model, &orders.and_further(way.further), rng) {
             Ok(fibre) => fibre,
             // what is too long with more derivatives may do without
@@ -130,7 +132,7 @@ pub(super) fn round(
                 return Err("it was cut off".to_owned());
             }
             Err(NoRound::Stopped(why)) if course.work.get() > question.work => {
-                return Err(format!("{why} after {:.0e} products", question.work as f64));
+                return Err(format!("{why}: more than {:.0e} products", question.work as f64));
             }
             Err(NoRound::Stopped(why)) => stopped = why,
         }
@@ -242,7 +244,7 @@ fn basis_of(
     Basis::of(field, monomials, rows, &limits).map_err(|stop| {
         let sizes = format!("{} equations in {} variables", solved.equations.len(), place.len());
         NoRound::Stopped(match stop {
-            Stop::TimeIsUp => format!("the Groebner basis of {sizes} was not reached"),
+            Stop::TimeIsUp => format!("the Groebner basis of {sizes} takes too long"),
             Stop::TooWide(columns) => {
                 format!("the Groebner basis of {sizes} needs a matrix of {columns} columns and more")
             }

@@ -1,8 +1,15 @@
+use super::SolutionsQuestion;
 use super::basis::{Basis, Limits, Row};
+use super::model::Model;
 use super::monomials::Monomials;
 use super::quotient::{Algebra, NoAlgebra, distinct_roots};
+use super::round::{Course, WAYS, round};
+use crate::observability::generic::Probe;
 use palmistry_math::number::PrimeField;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 use std::cell::Cell;
+use std::sync::atomic::AtomicBool;
 
 /// The least prime above 2^61.
 const PRIME: u64 = (1 << 61) + 15;
@@ -65,4 +72,42 @@ fn curves_and_contradictions() {
     assert_eq!(algebra(2, &[curve]).err(), Some(NoAlgebra::Infinite));
     let other: Terms = &[(&[(0, 1), (1, 1)], 1), (&[], -2)];
     assert_eq!(algebra(2, &[curve, other]).map(|found| found.dimension()).ok(), Some(0));
+}
+
+/// What is counted does not depend on how many derivatives were taken, on what was solved before or on the order of monomials.
+#[test]
+fn every_way_counts_the_same_values() {
+    let rows = [
+        ("state x param k, a unknown drift f x' = -k^2*x + a output x^2", vec![2, 2, 2]),
+        (
+            "state x, s param v, k unknown drift f x' = -v*x/(k + x) s' = v*x/(k + x) - s output s",
+            vec![1, 1, 1, 1],
+        ),
+        // either exchanges the two compartments that are not measured
+        (
+            "state x, y, z param a, b, c, d unknown drift f x' = -(a + b)*x + c*y + d*z y' = a*x - c*y \
+             z' = b*x - d*z input u x' = 1 others' = 0 output x",
+            vec![1, 2, 2, 2, 2, 2, 2],
+        ),
+        // a pendulum whose sine is measured: the angle or its supplement
+        ("state q, w angle q param g unknown drift f q' = w w' = -g*sin(q) output sin(q)", vec![2, 2, 2]),
+    ];
+    for (text, expected) in rows {
+        let system: palmistry_lang::System = format!("system \"s\" {text}").parse().unwrap();
+        let model = Model::new(&system, &Default::default(), &[]).unwrap();
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        let orders = Probe::new(&system, &Default::default()).orders(&mut rng).unwrap();
+        let interrupt = AtomicBool::new(false);
+        let question = SolutionsQuestion {
+            conditions: Default::default(),
+            expressions: Vec::new(),
+            work: 1_000_000_000,
+            interrupt: &interrupt,
+        };
+        for way in WAYS {
+            let course = Course { work: Cell::new(0), way: Cell::new(Some(way)) };
+            let round = round(&model, &orders, &question, &course, &mut rng).unwrap();
+            assert_eq!(round.values, expected, "{text} {way:?}");
+        }
+    }
 }
