@@ -86,9 +86,11 @@ pub(super) struct Course {
 
 /// Why a round has no answer.
 pub(super) enum NoRound {
-    /// Another way may have one, or more work.
+    /// More work may have one, or another way.
     Stopped(String),
-    /// No way has.
+    /// This way takes too much room, however much work is done.
+    TooLarge(String),
+    /// No way has one.
     Failed(String),
 }
 
@@ -110,32 +112,32 @@ pub(super) fn round(
             std::iter::once((FIRST, SHARES[0])).chain(later).collect()
         }
     };
-    let mut stopped = String::new();
+    let (mut stopped, mut too_large) = (String::new(), Vec::new());
     for (way, share) in tries {
+        if too_large.contains(&way) {
+            continue;
+        }
         let end = (course.work.get() + (question.work / share).max(LEAST_WORK)).min(question.work);
-        let fibre = match random_fibre(model, &orders.and_further(way.further), rng) {
-            Ok(fibre) => fibre,
-            // what is too long with more derivatives may do without
-            Err(NoRound::Stopped(why)) if way.further > 0 => {
-                stopped = why;
-                continue;
-            }
-            Err(NoRound::Stopped(why) | NoRound::Failed(why)) => return Err(why),
-        };
-        match analysed(model, fibre, question, course, (way, end), rng) {
+        let found = random_fibre(model, &orders.and_further(way.further), rng)
+            .and_then(|fibre| analysed(model, fibre, question, course, (way, end), rng));
+        stopped = match found {
             Ok(round) => {
                 course.way.set(Some(way));
                 return Ok(round);
             }
             Err(NoRound::Failed(why)) => return Err(why),
-            Err(NoRound::Stopped(_)) if question.interrupt.load(Ordering::Relaxed) => {
+            Err(_) if question.interrupt.load(Ordering::Relaxed) => {
                 return Err("it was cut off".to_owned());
             }
             Err(NoRound::Stopped(why)) if course.work.get() > question.work => {
                 return Err(format!("{why}: more than {:.0e} products", question.work as f64));
             }
-            Err(NoRound::Stopped(why)) => stopped = why,
-        }
+            Err(NoRound::Stopped(why)) => why,
+            Err(NoRound::TooLarge(why)) => {
+                too_large.push(way);
+                why
+            }
+        };
     }
     Err(stopped)
 }
@@ -147,7 +149,7 @@ fn random_fibre(model: &Model, orders: &Orders, rng: &mut ChaCha8Rng) -> Result<
         match Fibre::new(model, orders, field, &mut Source { rng, given: HashMap::new() }) {
             Ok(fibre) => return Ok(fibre),
             Err(Trouble::Pole) => {}
-            Err(Trouble::TooLarge(why)) => return Err(NoRound::Stopped(why)),
+            Err(Trouble::TooLarge(why)) => return Err(NoRound::TooLarge(why)),
         }
     }
     Err(NoRound::Failed(format!("{ATTEMPTS} random points were poles")))
@@ -243,18 +245,13 @@ fn basis_of(
     let rows = solved.equations.iter().map(|equation| row(equation, place, &mut monomials)).collect();
     Basis::of(field, monomials, rows, &limits).map_err(|stop| {
         let sizes = format!("{} equations in {} variables", solved.equations.len(), place.len());
-        NoRound::Stopped(match stop {
-            Stop::TimeIsUp => format!("the Groebner basis of {sizes} takes too long"),
-            Stop::TooWide(columns) => {
-                format!("the Groebner basis of {sizes} needs a matrix of {columns} columns and more")
-            }
-            Stop::TooFull(entries) => {
-                format!("the Groebner basis of {sizes} needs a matrix of {entries} entries and more")
-            }
-            Stop::DegreeTooHigh(degree) => {
-                format!("the Groebner basis of {sizes} needs polynomials of degree {degree}")
-            }
-        })
+        let larger = |what: String| NoRound::TooLarge(format!("the Groebner basis of {sizes} needs {what}"));
+        match stop {
+            Stop::TimeIsUp => NoRound::Stopped(format!("the Groebner basis of {sizes} takes too long")),
+            Stop::TooWide(columns) => larger(format!("a matrix of {columns} columns and more")),
+            Stop::TooFull(entries) => larger(format!("a matrix of {entries} entries and more")),
+            Stop::DegreeTooHigh(degree) => larger(format!("polynomials of degree {degree}")),
+        }
     })
 }
 
