@@ -2,6 +2,7 @@
 
 use super::jets::Jet;
 use palmistry_math::number::PrimeField;
+use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Equations that are left, and the variables that are functions of those in them.
@@ -11,19 +12,30 @@ pub(super) struct Solved {
     highest_degree: u32,
 }
 
+/// What it takes to look at a term of a polynomial in a tree, in products of residues.
+pub(super) const TERM: u64 = 40;
+
+/// How many terms polynomials have.
+pub(super) fn terms(equations: &[Jet]) -> u64 {
+    equations.iter().map(|equation| equation.terms.len() as u64).sum()
+}
+
 /// A polynomial may grow to so many terms.
 const LONGEST: usize = 3_000;
 
 impl Solved {
-    /// Solves equations up to a degree, the others stay.
+    /// Solves equations up to a degree, the others stay; what it takes is added to the work.
     pub fn new(
         field: &PrimeField,
         equations: Vec<Jet>,
         highest_degree: u32,
+        work: &Cell<u64>,
         is_over: &dyn Fn() -> bool,
     ) -> Solved {
         let mut solved = Solved { equations, solved: HashMap::new(), highest_degree };
         loop {
+            // each step goes through all terms
+            work.set(work.get() + TERM * terms(&solved.equations));
             solved.equations.retain(|equation| !equation.is_zero());
             solved.put_numbers_in(field);
             if is_over() || !(solved.put_one_in(field) || solved.combine(field)) {

@@ -2,7 +2,7 @@
 
 use super::SolutionsQuestion;
 use super::basis::{Basis, Limits, Row, Stop};
-use super::eliminate::Solved;
+use super::eliminate::{Solved, TERM, terms};
 use super::jets::Jet;
 use super::model::{Model, Motion, Quotient};
 use super::monomials::Monomials;
@@ -174,7 +174,9 @@ pub(super) fn analysed(
         Form::Short => u32::MAX,
         Form::Graded => 1,
     };
-    let solved = Solved::new(&field, fibre.equations, highest_degree, &is_over);
+    // the equations were differentiated, and evaluated at the point
+    course.work.set(course.work.get() + 2 * TERM * terms(&fibre.equations));
+    let solved = Solved::new(&field, fibre.equations, highest_degree, &course.work, &is_over);
     let variables = solved.variables();
     // derivatives of high order are the greatest
     let place: HashMap<u32, usize> = variables.iter().rev().copied().zip(0..).collect();
