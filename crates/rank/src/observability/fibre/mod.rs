@@ -131,7 +131,7 @@ pub struct SolutionsQuestion<'a> {
 }
 
 /// Work for about a minute.
-pub const WORK: u64 = 10_000_000_000;
+pub const WORK: u64 = 15_000_000_000;
 
 /// How many values of each unknown give the same outputs.
 ///
