@@ -33,7 +33,7 @@ pub(super) enum Stop {
 /// How far one goes.
 pub(super) struct Limits<'a> {
     pub columns: usize,
-    /// Of one matrix, in which a zero is none.
+    /// Of one matrix, of what is found in it, and of the basis: so much each. A zero is no entry.
     pub entries: usize,
     pub degree: u32,
     /// Products of residues that were done so far.
@@ -144,6 +144,7 @@ impl Basis {
             pairs: Vec::new(),
             columns: Columns::default(),
         };
+        let mut held = 0;
         let mut waiting: BTreeMap<u32, Vec<Row>> = BTreeMap::new();
         for row in rows {
             if let Some(lead) = row.monomials.first() {
@@ -164,6 +165,10 @@ impl Basis {
             let found = basis.reduced(degree, generators.unwrap_or_default(), limits)?;
             for row in found {
                 limits.spend_on_monomials(basis.elements.len(), &basis.monomials);
+                held += row.monomials.len();
+                if held > limits.entries {
+                    return Err(Stop::TooFull(held));
+                }
                 basis.insert(row);
                 if (limits.is_over)() {
                     return Err(Stop::TimeIsUp);
@@ -281,8 +286,11 @@ impl Basis {
         rows.sort_by(|a, b| self.monomials.compare(a.monomials[0], b.monomials[0]));
         let bound = u128::from(field.modulus()) << 64;
         let mut dense: Vec<u128> = vec![0; columns.len()];
-        let mut found = Vec::new();
+        let (mut found, mut entries) = (Vec::new(), 0);
         for row in rows {
+            if entries > limits.entries {
+                return Err(Stop::TooFull(entries));
+            }
             if (limits.is_over)() {
                 return Err(Stop::TimeIsUp);
             }
@@ -326,6 +334,7 @@ impl Basis {
             for value in &mut kept {
                 *value = field.product(*value, inverse);
             }
+            entries += kept.len();
             let monomials = kept_places.iter().map(|place| columns[*place as usize]).collect();
             found.push(Row { monomials, coefficients: kept.clone() });
             let lead = kept_places[0] as usize;

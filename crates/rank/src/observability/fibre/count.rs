@@ -36,10 +36,12 @@ pub(super) fn count(
     let mut best: Option<Round> = None;
     let mut wanted = LEAST_ROUNDS;
     while answer.rounds < wanted {
-        let before = course.work.get();
         let round = round(model, &orders, question, &course, &mut rng);
         answer.work = course.work.get();
         let round = round?;
+        if let Some(way) = course.way.get() {
+            answer.orders = orders.and_further(way.further).last;
+        }
         answer.rounds += 1;
         match &mut best {
             None => best = Some(round),
@@ -54,7 +56,7 @@ pub(super) fn count(
         if answer.rounds == 1 {
             // further rounds, where they are cheap and make a proof of it
             let Some(best) = &best else { continue };
-            let cost = (course.work.get() - before).max(1);
+            let cost = best.work.max(1);
             let affordable = (question.work / 2 / cost).min(MOST_ROUNDS as u64) as usize;
             for (place, values) in best.values.iter().enumerate() {
                 if let Some(each) = of_a_round(model, &orders, place, *values) {

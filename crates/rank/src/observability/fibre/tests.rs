@@ -1,12 +1,12 @@
 use super::SolutionsQuestion;
-use super::basis::{Basis, Limits, Row};
+use super::basis::{Basis, Limits, Row, Stop};
 use super::model::Model;
 use super::monomials::Monomials;
 use super::quotient::{Algebra, NoAlgebra, distinct_roots};
 use super::round::{Course, WAYS, round};
 use crate::observability::generic::Probe;
 use palmistry_math::number::PrimeField;
-use rand::SeedableRng;
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::cell::Cell;
 use std::sync::atomic::AtomicBool;
@@ -110,4 +110,57 @@ fn every_way_counts_the_same_values() {
             assert_eq!(round.values, expected, "{text} {way:?}");
         }
     }
+}
+
+/// The table against powers that are compared one by one, in more variables than a mask has bits and with more monomials than it begins with.
+#[test]
+fn the_table_of_monomials_is_one_of_powers() {
+    for variables in [1, 9, 70] {
+        let mut rng = ChaCha8Rng::seed_from_u64(variables as u64);
+        let mut table = Monomials::new(vec![1; variables]);
+        let mut draw = || -> Vec<u16> { (0..variables).map(|_| rng.random_range(0..4)).collect() };
+        let number = |table: &mut Monomials, powers: &[u16]| {
+            table.of(&powers.iter().copied().enumerate().collect::<Vec<_>>())
+        };
+        let combined = |a: &[u16], b: &[u16], by: fn(u16, u16) -> u16| -> Vec<u16> {
+            a.iter().zip(b).map(|(a, b)| by(*a, *b)).collect()
+        };
+        for _ in 0..2000 {
+            let (left, right) = (draw(), draw());
+            let (a, b) = (number(&mut table, &left), number(&mut table, &right));
+            assert_eq!((table.powers(a), table.powers(b)), (left.as_slice(), right.as_slice()));
+            let product = table.product(a, b);
+            assert_eq!(product, number(&mut table, &combined(&left, &right, |a, b| a + b)));
+            assert_eq!(table.quotient(product, a), b);
+            let lcm = table.lcm(a, b);
+            assert_eq!(lcm, number(&mut table, &combined(&left, &right, u16::max)));
+            assert!(table.is_lcm(a, b, lcm) && (lcm == product || !table.is_lcm(a, b, product)));
+            assert_eq!(table.divides(a, b), left.iter().zip(&right).all(|(a, b)| a <= b));
+            assert!(table.divides(a, lcm) && table.divides(b, lcm) && table.divides(0, a));
+            assert_eq!(table.are_coprime(a, b), lcm == product);
+        }
+        assert!(table.len() < 4 * 2000 + 2);
+    }
+}
+
+/// Each limit ends a basis with its own word.
+#[test]
+fn limits_are_named() {
+    let field = PrimeField::new(PRIME);
+    let ends = |columns, entries, degree| {
+        let mut monomials = Monomials::new(vec![1; 2]);
+        let one = field.one();
+        let mut row = |a: &[(usize, u16)], b: &[(usize, u16)]| Row {
+            monomials: vec![monomials.of(a), monomials.of(b)],
+            coefficients: vec![one, one],
+        };
+        let rows = vec![row(&[(0, 2)], &[(1, 1)]), row(&[(0, 1), (1, 1)], &[])];
+        let work = Cell::new(0);
+        let limits = Limits { columns, entries, degree, work: &work, is_over: &|| false };
+        Basis::of(field, monomials, rows, &limits).err()
+    };
+    assert_eq!(ends(100, 100, 50), None);
+    assert!(matches!(ends(1, 100, 50), Some(Stop::TooWide(_))));
+    assert!(matches!(ends(100, 1, 50), Some(Stop::TooFull(_))));
+    assert!(matches!(ends(100, 100, 1), Some(Stop::DegreeTooHigh(2))));
 }
