@@ -113,6 +113,30 @@ fn what_takes_too_long_is_undecided() {
     assert_eq!(of_y.at_least.as_ref().map(|(least, _)| *least), Some(2));
 }
 
+/// Less work may leave a number open or unproved, it never changes one: also where it ends between the points that make an answer and those
+/// that make a proof.
+#[test]
+fn work_changes_no_number() {
+    let text = "state x, y, z param a, b, c, d unknown drift f x' = -(a + b)*x + c*y + d*z y' = a*x - c*y z' = b*x - d*z \
+                output x";
+    let words = |work: u64| -> Vec<(String, bool)> {
+        ask(&read(text), &[], work).iter().map(|of_it| (number(of_it), of_it.is_proved())).collect()
+    };
+    let all = words(100_000_000);
+    assert!(all.iter().all(|(_, is_proved)| *is_proved), "{all:?}");
+    let mut ends = std::collections::BTreeSet::new();
+    for step in 20..60 {
+        let found = words((f64::from(step) / 2.5).exp2() as u64);
+        for ((number, is_proved), (of_all, _)) in found.iter().zip(&all) {
+            let is_open = number.starts_with("undecided");
+            assert!(is_open || number == of_all, "{number} {of_all}");
+            ends.insert((is_open, *is_proved));
+        }
+    }
+    // each of the three ends was met: open, computed, proved
+    assert_eq!(ends.len(), 3, "{ends:?}");
+}
+
 /// What is proved is said to be, the rest with its number in the remark.
 #[test]
 fn claims_about_numbers_of_values() {

@@ -162,8 +162,16 @@ pub fn slow_text(observed: &SlowObserved<'_>) -> String {
 /// Jumps in one line.
 pub(super) fn jumps_in_words(answers: &SlowAnswers) -> String {
     let one = |jump: &FoundJump| {
-        let word = if jump.predicted { "as descent says" } else { "another pose than descent says" };
-        format!("before sample {} by {:.4} rad, {word}", jump.row + 1, jump.turn)
+        let word = match (jump.certain, jump.predicted) {
+            (false, _) => "possibly: a quick turn without a jump explains the measurements as well",
+            (true, true) => "as descent says",
+            (true, false) => "another pose than descent says",
+        };
+        let before = match jump.within.map(|row| row + 1) {
+            [first, last] if first < last => format!("before one of the samples {first} to {last}"),
+            [only, _] => format!("before sample {only}"),
+        };
+        format!("{before} by {:.4} rad, {word}", jump.turn)
     };
     answers.jumps.iter().map(one).collect::<Vec<_>>().join("; ")
 }
@@ -220,7 +228,7 @@ pub fn slow_json(observed: &SlowObserved<'_>) -> Value {
         "simulation": simulation,
         "shape": together,
         "ways": ways.collect::<Vec<_>>(),
-        "jumps": answers.jumps.iter().map(|jump| json!({ "row": jump.row, "turn": jump.turn, "predicted": jump.predicted })).collect::<Vec<_>>(),
+        "jumps": answers.jumps.iter().map(|jump| json!({ "row": jump.row, "within": jump.within, "turn": jump.turn, "predicted": jump.predicted, "certain": jump.certain })).collect::<Vec<_>>(),
         "arrangements": answers.arrangements.map(|both| both.map(|at| json!({ "patches": at.patches, "area": at.area, "force": at.force, "contact": at.contact, "error": at.error() }))),
         "heights": votes.collect::<Vec<_>>(),
         "study": study_json(observed.study),

@@ -25,8 +25,15 @@ fn tally(way: &WayTally) -> [String; 2] {
 fn jump_tallies(row: &StudyRow) -> Vec<String> {
     let one = |(jumps, at): (&usize, &JumpTally)| {
         format!(
-            "with {jumps} jumps {} runs, the whole outline of {}, every jump in its place in {}; descent leads to {} of {} jumps",
-            at.runs, at.recovered, at.located, at.predicted[1], at.predicted[0]
+            "with {jumps} jumps {} runs, the whole outline of {}, every jump in its place in {}; descent leads to {} of {} jumps; {} runs explained, {} with a jump that never happened, {} with one that was missed",
+            at.runs,
+            at.recovered,
+            at.located,
+            at.predicted[1],
+            at.predicted[0],
+            at.explained,
+            at.false_jumps,
+            at.missed
         )
     };
     row.jumps.iter().map(one).collect()
@@ -97,7 +104,7 @@ pub(super) fn study_json(rows: &[StudyRow]) -> Vec<Value> {
             "order": row.order,
             "jumped": row.jumped,
             "jumps": row.jumps.iter().map(|(jumps, at)| {
-                json!({ "jumps": jumps, "runs": at.runs, "recovered": at.recovered, "located": at.located, "found": at.predicted[0], "predicted": at.predicted[1] })
+                json!({ "jumps": jumps, "runs": at.runs, "recovered": at.recovered, "located": at.located, "found": at.predicted[0], "predicted": at.predicted[1], "explained": at.explained, "false_jumps": at.false_jumps, "missed": at.missed })
             }).collect::<Vec<_>>(),
             "recovered": row.recovered,
             "silent": row.silent,

@@ -3,7 +3,7 @@
 use super::descent::{Squares, descend, inverse, joined, triangle_of};
 use super::record::{Followed, Unknowns, WholeRecord};
 use nalgebra::{DMatrix, DVector};
-use palmistry_bodies::shape::{ShapeEstimate, SupportFunction};
+use palmistry_bodies::shape::{ShapeEstimate, SupportFunction, deviation_of};
 use std::sync::atomic::AtomicBool;
 
 /// What a whole record told.
@@ -18,7 +18,15 @@ pub(super) struct Found {
     pub misfit: f64,
     /// The logarithm of the probability of the readings, but for a constant of the record.
     pub evidence: f64,
+    /// Whether errors as large as its own are linear.
+    pub is_linear: bool,
 }
+
+/// Two shapes that differ by no more than this part of a deviation are one.
+const SAME: f64 = 0.3;
+
+/// So many descents, each from where the last one stopped, make a search.
+const MOST_DESCENTS: usize = 20;
 
 /// So many deviations are not chance.
 const CERTAIN: f64 = 5.0;
@@ -28,6 +36,21 @@ impl Found {
     pub fn is_refuted_by(&self, other: &Found) -> bool {
         let fewer = self.shape.degrees.saturating_sub(other.shape.degrees).max(1) as f64;
         self.shape.chi_square > other.shape.chi_square + fewer + CERTAIN * (2.0 * fewer).sqrt()
+    }
+
+    /// Whether the body's centre of mass lies on the body's side of both palms, as it has to.
+    pub fn is_body(&self) -> bool {
+        self.motion.iter().all(|at| at.radii.iter().all(|radius| *radius > 0.0))
+    }
+
+    /// Whether another one says the same of the body where it was touched, to a part of this one's deviations.
+    pub fn is_also(&self, other: &Found) -> bool {
+        self.motion.iter().zip(&other.motion).all(|(own, other)| {
+            (0..2).all(|palm| {
+                let deviation = deviation_of(&self.covariance, &own.radius_rows[palm]);
+                (own.radii[palm] - other.radii[palm]).abs() <= SAME * deviation
+            })
+        })
     }
 }
 
@@ -126,6 +149,19 @@ impl WholeRecord {
         })
     }
 
+    /// The same, gone on with for as long as it takes; none where it was still on its way after [`MOST_DESCENTS`] of them.
+    pub fn descend_to_end(&self, start: Unknowns, prior: &[f64], interrupt: &AtomicBool) -> Option<Best> {
+        let mut x = start;
+        for _ in 0..MOST_DESCENTS {
+            let best = self.descend(x, prior, self.times.len(), interrupt)?;
+            if best.is_settled {
+                return Some(best);
+            }
+            x = best.x;
+        }
+        None
+    }
+
     /// The root of the mean square of what is left of a contact, in m, by the sum of its squares.
     pub fn misfit(&self, cost: f64, rows: usize) -> f64 {
         self.sigma * (cost / (2 * rows) as f64).sqrt()
@@ -171,7 +207,7 @@ impl WholeRecord {
             widened: 1.0,
         };
         let misfit = self.misfit(chi_square, self.times.len());
-        Found { unknowns, covariance, shape, motion, misfit, evidence }
+        Found { unknowns, covariance, shape, motion, misfit, evidence, is_linear: true }
     }
 
     /// The length by which coefficients are measured beforehand, in m: twice the mean of what was read, from which a body that touches both palms cannot be far.

@@ -77,11 +77,18 @@ impl WholeRecord {
         for points in FEWEST..=MOST {
             let nearest = self.nearest(&radii, begins, interrupt);
             let Some((end, best)) = self.by_readings(series, nearest, interrupt) else { break };
-            begins = with_a_point_more(&best.x.support, points);
             // what is still on its way has no band: it is no candidate, and no more than a beginning
-            if !best.is_settled {
-                continue;
-            }
+            let (end, best) = match best.is_settled {
+                true => (end, best),
+                false => match self.gone_on(&best, interrupt) {
+                    Some(settled) => settled,
+                    None => {
+                        begins = with_a_point_more(&best.x.support, points);
+                        continue;
+                    }
+                },
+            };
+            begins = with_a_point_more(&best.x.support, points);
             let before = found.iter().map(|found| found.evidence).fold(f64::NEG_INFINITY, f64::max);
             idle = if end.evidence > before { 0 } else { idle + 1 };
             let explains = |cost: f64| self.is_explained(cost, self.times.len());
@@ -92,6 +99,13 @@ impl WholeRecord {
             }
         }
         found
+    }
+
+    /// A spline whose search had not ended, to its end; none where it does not come to one.
+    fn gone_on(&self, best: &Best, interrupt: &AtomicBool) -> Option<(Found, Best)> {
+        let prior = self.spline_prior(&best.x.support);
+        let best = self.descend_to_end(best.x.clone(), &prior, interrupt)?;
+        Some((self.at_minimum(&best, &prior)?, best))
     }
 
     /// Normals that were touched, and the radii there by a series.

@@ -6,7 +6,7 @@
 
 use super::candidate::{Best, Found, Whole, gained};
 use super::descent::{Squares, inverse, joined, solved};
-use super::record::{Unknowns, WholeRecord};
+use super::record::{Followed, Unknowns, WholeRecord};
 use nalgebra::{DMatrix, DVector};
 use palmistry_bodies::shape::{SupportFunction, SupportSeries};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -20,11 +20,17 @@ const MORE: f64 = 1e-3;
 const PARTS: [f64; 5] = [1.0, 0.3, 0.1, 0.03, 0.01];
 const DECAYS: [f64; 5] = [2.0, 3.0, 4.0, 6.0, 9.0];
 
+/// The harmonics with which a search begins that is about more than one motion.
+const BEGUN: usize = 6;
+
 /// Beliefs that are this much less likely than the likeliest are left out.
 const UNLIKELY: f64 = 1e-6;
 
 /// All is linear about a point so near to the mean that what is left does not change by more than this.
 const NEAR: f64 = 0.05;
+
+/// Where the mean of all beliefs leaves other contacts than the point by more than this, five deviations squared, errors are not linear and their covariance is none.
+const LINEAR: f64 = 25.0;
 const ROUNDS: usize = 5;
 
 /// What is believed of the harmonics beforehand.
@@ -39,7 +45,9 @@ impl Belief {
     /// The roots of the weights of the coefficients about zero, of a body of a size in m.
     fn weights(self, size: f64) -> Vec<f64> {
         let deviation = |k: usize| match k {
-            0 | 1 => 2.0 * size,
+            0 => 2.0 * size,
+            // the centre of mass lies inside
+            1 => 0.5 * size,
             k => {
                 let k = k as f64;
                 (2.0 / (k * k - 1.0)).min(self.part * (2.0 / k).powf(self.decay)) * size
@@ -84,9 +92,36 @@ struct Mixture {
 impl WholeRecord {
     /// The series that the readings tell, from a point near it; none where nothing can be followed, or it was interrupted.
     pub fn series(&self, start: &Unknowns, interrupt: &AtomicBool) -> Option<Found> {
+        let order = *self.orders()[..self.asked()].last()?;
+        let first = Belief { order, part: 1.0, decay: 3.0 }.weights(self.size());
+        let begin = self.descend_to_end(expanded(start, order), &first, interrupt)?;
+        self.series_about(&begin.x, interrupt)
+    }
+
+    /// What each of a few beliefs makes of the readings, with the harmonics that a beginning has at most.
+    pub fn believed(&self, begin: &Unknowns, interrupt: &AtomicBool) -> Vec<Found> {
+        let one = |part: f64| {
+            let weights = Belief { order: BEGUN, part, decay: 3.0 }.weights(self.size());
+            let best = self.descend(expanded(begin, BEGUN), &weights, self.times.len(), interrupt)?;
+            self.at_minimum(&best, &weights)
+        };
+        PARTS.into_iter().filter_map(one).collect()
+    }
+
+    fn orders(&self) -> Vec<usize> {
         let most = (self.times.len() / 4).max(1);
-        let orders: Vec<usize> = ORDERS.into_iter().filter(|order| *order <= most).collect();
-        let mut asked = FIRST.min(orders.len());
+        ORDERS.into_iter().filter(|order| *order <= most).collect()
+    }
+
+    /// So many of the orders are asked first.
+    fn asked(&self) -> usize {
+        FIRST.min(self.orders().len())
+    }
+
+    /// The series that the readings tell about a point where a search ended.
+    pub fn series_about(&self, start: &Unknowns, interrupt: &AtomicBool) -> Option<Found> {
+        let orders = self.orders();
+        let mut asked = self.asked();
         let mut x = start.clone();
         loop {
             let (found, last) = self.mixed(&x, &orders[..asked], interrupt)?;
@@ -101,9 +136,10 @@ impl WholeRecord {
     /// The mixture over so many orders, at its own mean.
     fn mixed(&self, start: &Unknowns, orders: &[usize], interrupt: &AtomicBool) -> Option<(Found, f64)> {
         let (order, rows) = (*orders.last()?, self.times.len());
-        let first = Belief { order, part: 1.0, decay: 3.0 }.weights(self.size());
-        let mut x = self.descend(expanded(start, order), &first, rows, interrupt)?.x;
+        let mut x = expanded(start, order);
         let mut round = 0;
+        // whether the last descent led anywhere
+        let mut is_moving = true;
         loop {
             if interrupt.load(Ordering::Relaxed) {
                 return None;
@@ -114,31 +150,36 @@ impl WholeRecord {
             let mixture = self.weigh(&triangle, orders)?;
             let mean = self.reached(&x, &mixture.value)?;
             let there = self.follow(&mean, rows, true)?;
-            let moved: f64 = motion
-                .iter()
-                .zip(&there)
-                .flat_map(|(a, b)| {
-                    [0, 1].map(|i: usize| ((a.contacts[i] - b.contacts[i]) / self.sigma).powi(2))
-                })
-                .sum();
+            let moved = self.apart_in_contacts(&motion, &there);
             round += 1;
-            if moved <= NEAR || round == ROUNDS {
+            if moved <= NEAR || round == ROUNDS || !is_moving {
                 // a mean that explains less than the point itself is one of what is not linear
                 let is_worse = self.squares(&there) > self.squares(&motion) + moved.sqrt() + 1.0;
                 let (at, motion) = if is_worse { (x, motion) } else { (mean, there) };
                 let found = self.found(at, (motion, &rows_there), mixture.covariance, mixture.evidence);
+                let found = Found { is_linear: moved <= LINEAR, ..found };
                 return Some((found, mixture.last));
             }
             // what is linear about one point may not be about another: the likeliest belief goes there by itself, from the mean or, where that explains less, from the point
             let weights = mixture.likeliest.weights(self.size());
             let whole = Whole { record: self, rows, prior: &weights };
-            let begins = [mean, x].map(|begin| expanded(&begin, mixture.likeliest.order));
+            let begins = [&mean, &x].map(|begin| expanded(begin, mixture.likeliest.order));
             let sums = begins.each_ref().map(|begin| whole.sum(begin).unwrap_or(f64::INFINITY));
             let [mean, point] = begins;
             let begin = if sums[0] <= sums[1] { mean } else { point };
-            let Best { x: next, .. } = self.descend(begin, &weights, rows, interrupt)?;
-            x = expanded(&next, order);
+            let Best { x: next, .. } = self.descend_to_end(begin, &weights, interrupt)?;
+            let next = expanded(&next, order);
+            let there = self.follow(&next, rows, false)?;
+            is_moving = self.apart_in_contacts(&motion, &there) > NEAR;
+            x = next;
         }
+    }
+
+    /// How far two motions' contacts are apart, in units of their variance.
+    fn apart_in_contacts(&self, one: &[Followed], other: &[Followed]) -> f64 {
+        let pairs =
+            one.iter().zip(other).flat_map(|(a, b)| [0, 1].map(|i: usize| a.contacts[i] - b.contacts[i]));
+        pairs.map(|off| (off / self.sigma).powi(2)).sum()
     }
 
     /// The triangle for the coefficients themselves instead of steps from a point.

@@ -10,6 +10,7 @@ use super::candidate::{Best, Found};
 use super::record::{Unknowns, WholeRecord};
 use super::series::{convex_weights, expanded};
 use crate::simulation::NOMINAL;
+use palmistry_bodies::shape::deviation_of;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What a whole record told: the likeliest candidate, and the others with their probabilities.
@@ -29,6 +30,9 @@ const FOUND: f64 = 1e-2;
 
 /// So many of the discs go on.
 const KEPT: usize = 6;
+
+/// A deviation of a support radius beyond this part of the mean radius is no small one: errors may not be linear there, and another motion may explain the readings as well.
+const WIDE: f64 = 2e-3;
 
 /// The standard deviation of the contacts at first where none is stated, in parts of their mean.
 const UNSTATED: f64 = 1e-4;
@@ -52,13 +56,26 @@ impl WholeRecord {
         self.sigma = if is_stated { stated } else { UNSTATED * self.size() };
         let begin = self.begin(starts, interrupt)?;
         let series = self.series(&begin.x, interrupt)?;
-        let candidates = match is_stated {
+        let mut candidates = match is_stated {
             true => {
-                let splines = self.splines(&series, is_stated, interrupt);
-                [vec![series], splines].concat()
+                let mut all = self.elsewhere(starts, &series, interrupt);
+                all.push(series);
+                let likelier = |a: &&Found, b: &&Found| a.evidence.total_cmp(&b.evidence);
+                let splines =
+                    all.iter().max_by(likelier).map(|best| self.splines(best, is_stated, interrupt));
+                all.extend(splines.into_iter().flatten());
+                all
             }
-            false => self.by_what_is_left(series, interrupt)?,
+            false => {
+                let mut all = self.by_what_is_left(series, interrupt)?;
+                if let [series] = &all[..] {
+                    let others = self.elsewhere(starts, series, interrupt);
+                    all.extend(others);
+                }
+                all
+            }
         };
+        candidates.retain(|found| found.is_body() && (found.is_linear || !is_stated));
         let told = weighed(candidates).map(|told| self.widened(told, is_stated))?;
         (is_stated || self.is_exact(&told.best) || self.is_spread(&told.best)).then_some(told)
     }
@@ -143,6 +160,47 @@ impl WholeRecord {
         best.filter(|_| !stop())
     }
 
+    /// Other series that explain readings with noise as large as these: where a band is wide the motion that was met first need not be the likeliest, nor the only one. A search that believes
+    /// little of the harmonics runs far along what the readings hardly tell; so each begins with few harmonics and much belief, the likeliest go on.
+    fn elsewhere(&self, starts: &[Unknowns], found: &Found, interrupt: &AtomicBool) -> Vec<Found> {
+        if !self.is_wide(found) {
+            return Vec::new();
+        }
+        let discs = self.best_discs(interrupt).into_iter();
+        let discs = discs.filter_map(|disc| self.by_parts(disc.x, 1, interrupt)).map(|end| end.x);
+        let begins = std::iter::once(found.unknowns.clone()).chain(starts.iter().cloned()).chain(discs);
+        let mut ends: Vec<Found> = begins.flat_map(|begin| self.believed(&begin, interrupt)).collect();
+        ends.retain(|end| self.is_explained(end.shape.chi_square, self.times.len()));
+        ends.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        let mut different: Vec<Found> = Vec::new();
+        for end in ends {
+            if different.len() < KEPT
+                && !different.iter().any(|known| known.is_also(&end) && end.is_also(known))
+            {
+                different.push(end);
+            }
+        }
+        let mut all: Vec<Found> = Vec::new();
+        for end in different {
+            let series = self.series_about(&end.unknowns, interrupt);
+            all.extend(
+                series
+                    .filter(|series| !all.iter().any(|known| known.is_also(series) && series.is_also(known))),
+            );
+        }
+        all.retain(|other| !found.is_also(other) || other.evidence > found.evidence);
+        all
+    }
+
+    /// Whether a shape is so uncertain somewhere where it was touched that its errors are not small.
+    fn is_wide(&self, found: &Found) -> bool {
+        let mean = found.shape.support.mean();
+        found.motion.iter().any(|at| {
+            let deviations = at.radius_rows.each_ref().map(|row| deviation_of(&found.covariance, row));
+            deviations.into_iter().any(|deviation| deviation > WIDE * mean)
+        })
+    }
+
     /// A series of the order that it has, about which no more is known than that it is convex.
     fn low(&self, start: Unknowns, rows: usize, interrupt: &AtomicBool) -> Option<Best> {
         let order = start.support.order();
@@ -168,12 +226,8 @@ impl WholeRecord {
 
     /// From discs that turn at one rate each: the best few by the first part of the record go on to all of it.
     fn begun_as_discs(&self, interrupt: &AtomicBool) -> Option<Best> {
-        let rows = self.part(PARTS[0]);
-        let starts = self.discs().into_iter();
-        let mut begun: Vec<Best> = starts.filter_map(|start| self.low(start, rows, interrupt)).collect();
-        begun.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         let mut best: Option<Best> = None;
-        for begin in begun.into_iter().take(KEPT) {
+        for begin in self.best_discs(interrupt) {
             let end = self.by_parts(begin.x, 1, interrupt);
             best = best.into_iter().chain(end).min_by(|a, b| a.cost.total_cmp(&b.cost));
             if best.as_ref().is_some_and(|best| self.is_explained(best.cost, self.times.len())) {
@@ -181,6 +235,16 @@ impl WholeRecord {
             }
         }
         best
+    }
+
+    /// The discs that explain the first part of the record best.
+    fn best_discs(&self, interrupt: &AtomicBool) -> Vec<Best> {
+        let rows = self.part(PARTS[0]);
+        let starts = self.discs().into_iter();
+        let mut begun: Vec<Best> = starts.filter_map(|start| self.low(start, rows, interrupt)).collect();
+        begun.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        begun.truncate(KEPT);
+        begun
     }
 
     /// What is left more than noise explains makes all deviations larger; and where neighbours are left alike, no sample tells as much as an independent one.

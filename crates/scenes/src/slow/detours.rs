@@ -3,7 +3,8 @@
 //! A body falls where the pose in which it lay ends, into the one to which descent leads, and stays there, since the palms have to go back a long way before it falls back. What a track
 //! has instead, a turn that no descent explains, may be a stretch of samples that were given another pose by the errors of their readings. So the body is led on from the
 //! sample before such a turn, or back from the one after it, until the track is met again or the readings speak against it: where this explains the readings of the stretch, or a shape
-//! that is fitted to it explains all of them no worse, and the body jumps less often then, it is the track. What it does not explain stays a jump that descent did not foretell.
+//! that is fitted to it explains all of them within five deviations as well, and the body jumps less often then, it is the track. What it does not explain stays a jump that descent did
+//! not foretell.
 
 use super::found::{CERTAIN, SlowShape};
 use super::outline::Outline;
@@ -25,9 +26,15 @@ pub(super) fn without_detours(
     mut found: SlowShape,
     interrupt: &dyn Fn() -> bool,
 ) -> SlowShape {
+    if !found.explains(EXACT) {
+        // nobody is told of its jumps
+        return found;
+    }
     let together = Together::of(readings);
     let mut jumps = found_jumps(readings, &found);
     let mut fitted = 0;
+    // of two tracks that the measurements do not tell apart the one that a body can have
+    let most = found.shape.chi_square + (CERTAIN * found.shape.widened).powi(2);
     for _ in 0..MOST {
         let better = jumps.iter().filter(|jump| !jump.predicted).find_map(|jump| {
             let ways =
@@ -38,8 +45,7 @@ pub(super) fn without_detours(
                     return None;
                 }
                 let other = along(&together, &found, way.phi0, interrupt);
-                let explains = way.explains
-                    || (other.explains(EXACT) && other.shape.chi_square <= found.shape.chi_square);
+                let explains = way.explains || (other.explains(EXACT) && other.shape.chi_square <= most);
                 let left = found_jumps(readings, &other);
                 (explains && left.len() < jumps.len()).then_some((other, left))
             })

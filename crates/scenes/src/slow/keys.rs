@@ -322,12 +322,12 @@ fn checked_study(
         return Err(wrong("study.orders", "an order is too low or too high".into(), "give 2 to 200"));
     }
     if let Some([least, most]) = study.jumps
-        && !(1..=most).contains(&least)
+        && !(least <= most && most > 0)
     {
         return Err(wrong(
             "study.jumps",
             format!("there is no number of jumps from {least} to {most}"),
-            "give the least, from 1 on, and the most, as in [1, 4]",
+            "give the least and the most, as in [1, 4], or leave it out for none",
         ));
     }
     if let Err(error) = plan_3_14(study.margin, study.rounds, 1.0) {

@@ -2,6 +2,7 @@
 
 use super::found::SlowShape;
 use super::readings::SlowReadings;
+use super::start::{EXACT, closed};
 use super::together::{Point, Together};
 use palmistry_bodies::shape::SupportSeries;
 
@@ -100,6 +101,31 @@ impl Together<'_> {
             }
         }
         best.map(|best| self.shape(&best))
+    }
+
+    /// The same shape with fewer harmonics, where Schwarz's criterion says that the others tell nothing: a search that went up the orders by parts of the readings keeps the highest one that a
+    /// part asked for, and harmonics that tell nothing leave a long valley in which it stops far from the body.
+    pub fn with_fewer_harmonics(&self, found: SlowShape, interrupt: &dyn Fn() -> bool) -> SlowShape {
+        let parameters = (2.0 * found.track.phi0.len() as f64).ln();
+        let criterion = |of: &SlowShape| of.shape.chi_square + (1 + 2 * of.order) as f64 * parameters;
+        let coefficients = found.shape.support.coefficients();
+        if !self.is_noisy() || !found.kinks.is_empty() || !found.explains(EXACT) {
+            return found;
+        }
+        let fewer = LADDER.into_iter().filter(|order| *order < found.order);
+        let mut others = fewer.flat_map(|order| {
+            // as they are, and as a closed outline through what was touched
+            let cut = coefficients[..1 + 2 * order].to_vec();
+            let through =
+                closed(self.readings, &found.track, order).map(|(support, _)| support.coefficients());
+            let starts = std::iter::once(cut).chain(through);
+            let begun = starts.filter_map(|start| self.begin(&start, &found.track.phi0));
+            let ends =
+                begun.map(|begin| self.shape(&self.without_lost(self.down(begin, interrupt), interrupt)));
+            ends.collect::<Vec<_>>()
+        });
+        let simpler = others.find(|other| other.explains(EXACT) && criterion(other) < criterion(&found));
+        simpler.filter(|_| !interrupt()).unwrap_or(found)
     }
 
     /// The same, over longer and longer parts of the readings: what the first ones tell leads the body through the next ones.

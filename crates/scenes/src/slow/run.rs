@@ -13,6 +13,7 @@ use super::scene::SlowScene;
 use super::segments::{FoundJump, found_jumps, from_segments};
 use super::start::{EXACT, Vote, from_nothing, from_nothing_briefly, votes};
 use super::thesis::{ThesisMethod, ThesisTrack, by_thesis};
+use super::together::Together;
 use crate::simulation::{deviation, normal, outline};
 use miette::Diagnostic;
 use palmistry_bodies::mechanics::Palm;
@@ -143,8 +144,7 @@ impl SlowExperiment {
         let timed = |seconds: &mut f64, begin: Instant| *seconds = begin.elapsed().as_secs_f64();
         let mut seconds = [f64::NAN; 3];
         let begin = Instant::now();
-        let together = from_any(readings, interrupt)
-            .map(|found| without_detours(readings, with_kinks(readings, found, interrupt), interrupt));
+        let together = from_any(readings, interrupt).map(|found| without_excess(readings, found, interrupt));
         timed(&mut seconds[0], begin);
         done("batch least squares");
         let explained = together.as_ref().is_some_and(|found| found.explains(EXACT));
@@ -206,6 +206,16 @@ fn from_any(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> Option<Slo
         .filter(explains)
         .or_else(|| from_segments(readings, interrupt).filter(explains))
         .or_else(|| from_nothing(readings, interrupt))
+}
+
+/// What a search found, without harmonics, jumps and unevenness that the readings do not ask for.
+pub(super) fn without_excess(
+    readings: &SlowReadings,
+    found: SlowShape,
+    interrupt: &dyn Fn() -> bool,
+) -> SlowShape {
+    let simpler = Together::of(readings).with_fewer_harmonics(found, interrupt);
+    without_detours(readings, with_kinks(readings, simpler, interrupt), interrupt)
 }
 
 /// The errors of a track, which has to have all samples.

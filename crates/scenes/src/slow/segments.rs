@@ -4,7 +4,7 @@
 //! what is left of the readings is what their errors leave. Where it is more, the body lies in another stable pose of the very shape that was found: first the one to which it falls
 //! in the recovered potential, then each other, from each sample on. What remains is no unknown a segment, but a choice among few poses, and all readings are explained at once.
 
-use super::found::SlowShape;
+use super::found::{CERTAIN, SlowShape};
 use super::ladder::Orders;
 use super::outline::Outline;
 use super::readings::SlowReadings;
@@ -47,10 +47,14 @@ const HALVINGS: usize = 20;
 pub struct FoundJump {
     /// The first sample after it.
     pub row: usize,
+    /// The first and the last sample that may be the first one after it, as far as the measurements say: within five deviations.
+    pub within: [usize; 2],
     /// By how much the body turned, in radians: as it descends where that is foretold, else by the shorter way round.
     pub turn: f64,
     /// Whether descent in the recovered potential leads there from the pose before.
     pub predicted: bool,
+    /// Whether the measurements need it: no shape within five deviations of the one that was found turns as far without a jump. Else a quick turn explains them as well.
+    pub certain: bool,
 }
 
 /// A stretch of samples that one shape explains, on its way to all.
@@ -224,22 +228,72 @@ pub fn from_segments(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> O
     best
 }
 
-/// Whether most of a turn between two positions of the palms happens at once, however short the way is made: a quick motion near a fold does not.
-fn remains(
+/// A turn that remains however short the way of the palms is made.
+#[derive(Clone, Copy, Debug)]
+struct Fall {
+    /// Where the palms are when it begins, as a part of their way between two samples.
+    at: f64,
+    /// The orientations before and after.
+    turn: [f64; 2],
+}
+
+/// What remains of a turn between two positions of the palms, if most of it happens at once: a quick motion near a fold does not.
+fn fall(
     [mut low, mut high]: [f64; 2],
     [mut from, mut to]: [f64; 2],
     led: &mut dyn FnMut(f64, f64) -> Option<f64>,
-) -> bool {
+) -> Option<Fall> {
     for _ in 0..HALVINGS {
         let middle = f64::midpoint(low, high);
-        let Some(there) = led(middle, from) else { return true };
+        let Some(there) = led(middle, from) else { break };
         if (there - from).abs() > (to - there).abs() {
             (high, to) = (middle, there);
         } else {
             (low, from) = (middle, there);
         }
     }
-    (to - from).abs() > JUMP / 2.0
+    ((to - from).abs() > JUMP / 2.0).then_some(Fall { at: high, turn: [from, to] })
+}
+
+/// Places between two poses at which a potential is asked whether it bends downwards.
+const BETWEEN: usize = 64;
+
+/// Whether the measurements say that a body falls between two poses. It does where the potential bends downwards somewhere between them: by how many of its own deviations it does so at
+/// most says how many deviations a shape that turns steadily is away at least.
+fn is_borne_out(together: &Together<'_>, found: &SlowShape, outline: &Outline, [from, to]: [f64; 2]) -> bool {
+    (1..BETWEEN).any(|place| {
+        let orientation = from + (to - from) * place as f64 / BETWEEN as f64;
+        let [_, stiffness] = together.bent(0, orientation, outline, &found.shape.covariance);
+        -stiffness.value > CERTAIN * stiffness.deviation
+    })
+}
+
+/// The palms' way between two samples, as a sample of its own.
+struct Between {
+    ends: [[f64; 2]; 2],
+    at: SlowReadings,
+}
+
+impl Between {
+    /// Between a sample and the one before.
+    fn before(readings: &SlowReadings, row: usize) -> Between {
+        Between { ends: [readings.palms[row - 1], readings.palms[row]], at: readings.part(&(row - 1..row)) }
+    }
+
+    /// The palms at a part of the way.
+    fn at(&mut self, part: f64) -> Together<'_> {
+        let [from, to] = self.ends;
+        self.at.palms = vec![[0, 1].map(|palm: usize| from[palm] + part * (to[palm] - from[palm]))];
+        Together::of(&self.at)
+    }
+
+    /// By how many samples the measurements leave open where a body falls: five deviations of the slope of the potential where the pose ends, over what the palms' way changes of it.
+    fn spread(&mut self, fall: &Fall, found: &SlowShape, outline: &Outline) -> f64 {
+        let pose = fall.turn[0];
+        let mut slope = |part: f64| self.at(part).bent(0, pose, outline, &found.shape.covariance)[0];
+        let (here, change) = (slope(fall.at), slope(1.0).value - slope(0.0).value);
+        CERTAIN * here.deviation / change.abs()
+    }
 }
 
 /// Where the body jumps in a track: between two samples the palms are moved on in small steps, and the recovered shape is led along.
@@ -248,18 +302,16 @@ pub fn found_jumps(readings: &SlowReadings, found: &SlowShape) -> Vec<FoundJump>
     let phi0 = &found.track.phi0;
     let mut all = Vec::new();
     for row in 1..phi0.len() {
-        let ends = [readings.palms[row - 1], readings.palms[row]];
-        let mut between = readings.part(&(row - 1..row));
-        let mut led = |at: f64, from: f64| {
-            between.palms = vec![[0, 1].map(|i: usize| ends[0][i] + at * (ends[1][i] - ends[0][i]))];
-            Together::of(&between).pose(0, from, &outline, PI).map(|found| found.0)
-        };
-        let (mut pose, mut jumped, mut followed) = (phi0[row - 1], false, true);
+        let mut between = Between::before(readings, row);
+        let mut led = |at: f64, from: f64| between.at(at).pose(0, from, &outline, PI).map(|found| found.0);
+        let (mut pose, mut falls, mut followed) = (phi0[row - 1], Vec::new(), true);
         for step in 1..=STEPS {
             let [before, at] = [step - 1, step].map(|step| step as f64 / STEPS as f64);
             match led(at, pose) {
                 Some(next) => {
-                    jumped |= (next - pose).abs() > JUMP && remains([before, at], [pose, next], &mut led);
+                    if (next - pose).abs() > JUMP {
+                        falls.extend(fall([before, at], [pose, next], &mut led));
+                    }
                     pose = next;
                 }
                 None => followed = false,
@@ -267,11 +319,20 @@ pub fn found_jumps(readings: &SlowReadings, found: &SlowShape) -> Vec<FoundJump>
         }
         let shorter = |turn: f64| (turn + PI).rem_euclid(TAU) - PI;
         let predicted = followed && shorter(pose - phi0[row]).abs() < JUMP;
-        if jumped || !predicted {
-            let before = phi0[row - 1];
-            let turn = if predicted { pose - before } else { shorter(phi0[row] - before) };
-            all.push(FoundJump { row, turn, predicted });
+        if falls.is_empty() && predicted {
+            continue;
         }
+        let before = phi0[row - 1];
+        let turn = if predicted { pose - before } else { shorter(phi0[row] - before) };
+        let (mut within, mut certain) = ([row; 2], false);
+        for fall in falls.iter().filter(|_| predicted) {
+            certain |= is_borne_out(&between.at(fall.at), found, &outline, fall.turn);
+            let (place, spread) = ((row - 1) as f64 + fall.at, between.spread(fall, found, &outline));
+            let [first, last] = [place - spread, place + spread].map(|place| place.ceil().max(1.0) as usize);
+            within = [within[0].min(first), within[1].max(last.min(phi0.len() - 1))];
+        }
+        // what descent does not foretell was held against the measurements before, and stays only where they need it
+        all.push(FoundJump { row, within, turn, predicted, certain: certain || !predicted });
     }
     all
 }

@@ -100,7 +100,11 @@ pub(super) fn touched(readings: &SlowReadings, track: &SlowTrack) -> Vec<Support
 }
 
 /// The closed function of an order through a track, and what is left, in parts of the mean radius.
-fn closed(readings: &SlowReadings, track: &SlowTrack, order: usize) -> Option<(SupportSeries, f64)> {
+pub(super) fn closed(
+    readings: &SlowReadings,
+    track: &SlowTrack,
+    order: usize,
+) -> Option<(SupportSeries, f64)> {
     let shape = fit_support(&touched(readings, track), SupportWeights::Relative, Some(order))?;
     // tracks of bodies that are none close, too: what is not convex is left as well
     let dent = (0..180)

@@ -1,13 +1,11 @@
 //! Many bodies: how often, how well and how fast each way finds a shape.
 
-use super::detours::without_detours;
 use super::families::Family;
-use super::kinks::with_kinks;
 use super::ladder::Orders;
 use super::quadrature::by_quadrature;
-use super::run::{readings_of, track_error};
+use super::run::{readings_of, track_error, without_excess};
 use super::scene::{SlowScene, SlowStudy};
-use super::segments::{found_jumps, from_segments};
+use super::segments::{FoundJump, found_jumps, from_segments};
 use super::start::{EXACT, from_nothing_within};
 use super::stopwatch::Stopwatch;
 use super::thesis::{ThesisMethod, by_thesis};
@@ -65,6 +63,12 @@ pub struct JumpTally {
     pub recovered: usize,
     /// Those in which every jump was found between its own two samples, and no other.
     pub located: usize,
+    /// The runs whose measurements are explained by what was found.
+    pub explained: usize,
+    /// Of these the ones with a jump that never happened: a certain one, as [`FoundJump::certain`](super::FoundJump) says, that no jump of the body is next to.
+    pub false_jumps: usize,
+    /// Of the runs that are explained the ones with a jump of the body between two samples of which nothing is said.
+    pub missed: usize,
     /// The jumps of those that were recovered, and how many of them descent in the recovered potential leads to.
     pub predicted: [usize; 2],
 }
@@ -163,7 +167,7 @@ pub fn slow_study(
                     {
                         let shape = family.draw(study.size, &mut random)?;
                         let before = row.clone();
-                        let is_one = one_body(&mut row, shape, study, scene.seed, interrupt);
+                        let is_one = one_body(&mut row, shape, scene, study, interrupt);
                         if interrupt() {
                             // a search that was cut off is no failure
                             row = before;
@@ -213,8 +217,8 @@ impl StudyRow {
 fn one_body(
     row: &mut StudyRow,
     shape: Shape,
+    scene: &SlowScene,
     study: &SlowStudy,
-    seed: u64,
     interrupt: &dyn Fn() -> bool,
 ) -> bool {
     let Ok(courses) = plan_3_14(study.margin, study.rounds, DURATION) else { return false };
@@ -241,7 +245,9 @@ fn one_body(
         row.jumped += 1;
         return false;
     };
-    let readings = readings_of(&truth, 0.0, row.resolution, seed);
+    // errors of its own for each body
+    let readings =
+        readings_of(&truth, scene.noise, row.resolution, scene.seed.wrapping_add(row.bodies as u64));
     let size = study.size;
     row.bodies += 1;
     let first = &truth.moments[0];
@@ -263,7 +269,7 @@ fn one_body(
         from_nothing_within(&readings, Orders { least, most: row.order, enough: 0.0 }, interrupt)
     };
     let found = found.map(|found| match row.order {
-        None => without_detours(&readings, with_kinks(&readings, found, interrupt), interrupt),
+        None => without_excess(&readings, found, interrupt),
         Some(_) => found,
     });
     let seconds = watch.seconds();
@@ -279,6 +285,15 @@ fn one_body(
     if study.jumps.is_some() {
         let tally = row.jumps.entry(truth.jumps.len()).or_default();
         tally.runs += 1;
+        if let Some(found) = found.as_ref().filter(|_| explained) {
+            tally.explained += 1;
+            let (told, happened) = (found_jumps(&readings, found), rows_after(&truth));
+            let is_at = |jump: &FoundJump, row: usize| (jump.within[0]..=jump.within[1]).contains(&row);
+            let is_false = |jump: &FoundJump| jump.certain && !happened.iter().any(|row| is_at(jump, *row));
+            tally.false_jumps += usize::from(told.iter().any(is_false));
+            tally.missed +=
+                usize::from(!happened.iter().all(|row| told.iter().any(|jump| is_at(jump, *row))));
+        }
         if let Some(found) = found.filter(|_| recovered && explained) {
             tally.recovered += 1;
             let told = found_jumps(&readings, &found);

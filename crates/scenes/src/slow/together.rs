@@ -10,7 +10,7 @@ use super::outline::{OF_KINK, Outline};
 use super::quadrature::SlowTrack;
 use super::readings::{Sampled, SlowReadings};
 use nalgebra::{DMatrix, DVector};
-use palmistry_bodies::shape::{ShapeEstimate, SupportSeries, convex_deviation};
+use palmistry_bodies::shape::{Measured, ShapeEstimate, SupportSeries, convex_deviation, deviation_of};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Steps for an order.
@@ -132,6 +132,21 @@ impl<'a> Together<'a> {
         }
         let stiffness = slope(high)[1];
         (stiffness > 0.0).then_some((high, stiffness))
+    }
+
+    /// The first and the second derivative of the potential by the orientation at a sample, in m, with their deviations by the covariance of the outline's coefficients.
+    pub fn bent(&self, row: usize, phi0: f64, series: &Outline, covariance: &DMatrix<f64>) -> [Measured; 2] {
+        let (a, b) = (self.sampled[row].second[0], self.sampled[row].first[0]);
+        let [first, second] = self.touched(row, phi0, series);
+        let [one, two] = self.angles[row].map(|angle| series.basis(angle - phi0));
+        [(1, -1.0), (2, 1.0)].map(|(order, sign)| {
+            let form: Vec<f64> =
+                one.iter().zip(&two).map(|(one, two)| sign * (a * one[order] + b * two[order])).collect();
+            Measured {
+                value: sign * (a * first[order] + b * second[order]),
+                deviation: deviation_of(covariance, &form),
+            }
+        })
     }
 
     pub fn contacts(&self, row: usize, [first, second]: &Touched) -> [f64; 2] {

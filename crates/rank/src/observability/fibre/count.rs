@@ -9,6 +9,7 @@ use palmistry_math::expression::LOG2_ERROR;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::cell::Cell;
+use std::sync::atomic::Ordering;
 
 /// A verdict that is computed rests on so many rounds at least.
 const LEAST_ROUNDS: usize = 2;
@@ -38,6 +39,11 @@ pub(super) fn count(
     while answer.rounds < wanted {
         let round = round(model, &orders, question, &course, &mut rng);
         answer.work = course.work.get();
+        let is_cut_off = answer.work > question.work || question.interrupt.load(Ordering::Relaxed);
+        if round.is_err() && is_cut_off && answer.rounds >= LEAST_ROUNDS {
+            // it is computed, and what was to prove it takes too long
+            break;
+        }
         let round = round?;
         if let Some(way) = course.way.get() {
             answer.orders = orders.and_further(way.further).last;
@@ -56,8 +62,8 @@ pub(super) fn count(
         if answer.rounds == 1 {
             // further rounds, where they are cheap and make a proof of it
             let Some(best) = &best else { continue };
-            let cost = best.work.max(1);
-            let affordable = (question.work / 2 / cost).min(MOST_ROUNDS as u64) as usize;
+            let left = question.work.saturating_sub(course.work.get());
+            let affordable = 1 + (left / 2 / best.work.max(1)).min(MOST_ROUNDS as u64 - 1) as usize;
             for (place, values) in best.values.iter().enumerate() {
                 if let Some(each) = of_a_round(model, &orders, place, *values) {
                     // what is known of the rank may fail as well

@@ -134,7 +134,7 @@ pub(super) fn round(
                 return Err("it was cut off".to_owned());
             }
             Err(NoRound::Stopped(why)) if course.work.get() > question.work => {
-                return Err(format!("{why}: more than {:.0e} products", question.work as f64));
+                return Err(format!("{why}: more than {:e} products", question.work));
             }
             Err(NoRound::Stopped(why)) => why,
             Err(NoRound::TooLarge(why)) => {
