@@ -31,7 +31,7 @@ BOOK = ROOT / "book/src/measurements.md"
 RELEASE = ROOT / "target/release/palmistry"
 OURS = ["multiple-shooting", "trust-region", "newton", "kalman", "unscented"]
 # what the library is made of: the last commit that touched any of it is the program's
-SOURCES = ["src", "proofs", "Cargo.toml", "Cargo.lock", "build.rs"]
+SOURCES = ["src", "crates", "proofs", "Cargo.toml", "Cargo.lock", "build.rs"]
 
 
 def arguments():

@@ -331,8 +331,44 @@ pub fn found_jumps(readings: &SlowReadings, found: &SlowShape) -> Vec<FoundJump>
             let [first, last] = [place - spread, place + spread].map(|place| place.ceil().max(1.0) as usize);
             within = [within[0].min(first), within[1].max(last.min(phi0.len() - 1))];
         }
-        // what descent does not foretell was held against the measurements before, and stays only where they need it
-        all.push(FoundJump { row, within, turn, predicted, certain: certain || !predicted });
+        if !predicted {
+            // it was held against the measurements before, and stays only where they need it; two poses so near each other that nothing is sure to lie between are one
+            let other = pose + shorter(phi0[row] - pose);
+            certain = !followed || is_borne_out(&between.at(1.0), found, &outline, [pose, other]);
+        }
+        all.push(FoundJump { row, within, turn, predicted, certain });
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::slow::{SlowExperiment, SlowScene};
+
+    /// A jump that the measurements need is certain, and lies between its own two samples; with a thousandth of a radius of uncertainty it is somewhere about them; where nothing is known of
+    /// the shape the body may as well have turned steadily.
+    #[test]
+    fn how_sure_a_jump_is_hangs_on_how_sure_the_shape_is() {
+        let text = include_str!("../../../../proofs/moll2002/scenes/slow_jump.toml");
+        let scene = SlowScene::parse("slow_jump.toml", text).unwrap();
+        let experiment = SlowExperiment::new(scene, None).unwrap();
+        let found = experiment.run(&|| false, &|_| ()).together.unwrap();
+        let jumps = |deviation: f64| {
+            let mut found = found.clone();
+            let n = found.shape.covariance.nrows();
+            found.shape.covariance = nalgebra::DMatrix::identity(n, n) * deviation.powi(2);
+            found_jumps(&experiment.readings, &found)
+        };
+        let sure = found_jumps(&experiment.readings, &found);
+        assert_eq!(sure.len(), 1);
+        assert!(sure[0].certain && sure[0].predicted && sure[0].within == [sure[0].row; 2], "{sure:?}");
+        let less = jumps(1e-3);
+        assert!(less[0].certain && less[0].row == sure[0].row, "{less:?}");
+        assert!(less[0].within[0] < less[0].row || less[0].within[1] > less[0].row, "{less:?}");
+        let unsure = jumps(1.0);
+        assert!(!unsure[0].certain && unsure[0].row == sure[0].row, "{unsure:?}");
+        let [first, last] = unsure[0].within;
+        assert!(first <= less[0].within[0] && last >= less[0].within[1], "{unsure:?}");
+    }
 }
