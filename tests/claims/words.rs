@@ -212,6 +212,9 @@ fn the_words_of_the_thesis() {
     }
     for (id, expected) in [
         ("4.54", "convention"),
+        ("4.89", "convention"),
+        ("4.91", "convention"),
+        ("3.text.first_boundary.diameter", "loose wording"),
         ("4.80", "loose wording"),
         ("6.text.direction", "loose wording"),
         ("3.text.moving_palms", "loose wording"),

@@ -23,7 +23,7 @@ pub struct Reconstruction {
     pub apart: Option<Apart>,
 }
 
-/// A band that is wider than what it is about: the deviations are those of a linear model, which holds for small ones only.
+/// A band that is too wide for what it is about: the deviations are those of a linear model, which holds for small ones only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TooWide {
     /// Half the width of the band where it is widest and was touched, two standard deviations, in m.

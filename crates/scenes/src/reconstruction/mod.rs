@@ -51,7 +51,8 @@ impl Experiment {
                 contradiction = agreement::contradiction(&self.names(), answer, &whole);
                 if contradiction.is_none() {
                     let coverage = coverage(&record, &told.best);
-                    let (shape, too_wide) = resolved(told.best.shape, &coverage);
+                    let is_linear = told.best.is_linear || !record.stated;
+                    let (shape, too_wide) = resolved(told.best.shape, is_linear, &coverage);
                     let whole = too_wide.is_none().then_some(whole);
                     return Some(Reconstruction {
                         track,
@@ -71,7 +72,7 @@ impl Experiment {
         let is_told = contradiction.is_none()
             && track::no_outline(answer, &track.forms, self.scene.observer.when_blind).is_none();
         let (shape, too_wide) =
-            shape.filter(|_| is_told).map_or((None, None), |shape| resolved(shape, &coverage));
+            shape.filter(|_| is_told).map_or((None, None), |shape| resolved(shape, true, &coverage));
         Some(Reconstruction { track, shape, coverage, whole: None, contradiction, too_wide, apart })
     }
 
@@ -139,13 +140,13 @@ impl Experiment {
 /// Normals at which a band is looked at.
 const NORMALS: u32 = 360;
 
-/// A shape, unless its band is somewhere wider than its mean radius where it was touched: no linear model reaches so far, and neither does its band.
-fn resolved(shape: ShapeEstimate, coverage: &Coverage) -> (Option<ShapeEstimate>, Option<TooWide>) {
+/// A shape, unless its errors are not linear, or its band is somewhere wider than its mean radius where it was touched: no linear model reaches so far, and neither does its band.
+fn resolved(shape: ShapeEstimate, is_linear: bool, coverage: &Coverage) -> (Option<ShapeEstimate>, Option<TooWide>) {
     let angles = (0..NORMALS).map(|i| std::f64::consts::TAU * f64::from(i) / f64::from(NORMALS));
     let touched = angles.filter(|angle| coverage.contains(*angle));
     let (band, mean) =
         (touched.map(|angle| shape.band(coverage, angle)).fold(0.0, f64::max), shape.support.mean());
-    match band > mean {
+    match !is_linear || band > mean {
         true => (None, Some(TooWide { band, mean })),
         false => (Some(shape), None),
     }

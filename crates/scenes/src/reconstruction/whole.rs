@@ -75,7 +75,11 @@ impl WholeRecord {
                 all
             }
         };
-        candidates.retain(|found| found.is_body() && (found.is_linear || !is_stated));
+        candidates.retain(Found::is_body);
+        // by readings whose deviation nobody states all is linear about what they leave, or nothing
+        if is_stated && candidates.iter().any(|found| found.is_linear) {
+            candidates.retain(|found| found.is_linear);
+        }
         let told = weighed(candidates).map(|told| self.widened(told, is_stated))?;
         (is_stated || self.is_exact(&told.best) || self.is_spread(&told.best)).then_some(told)
     }
