@@ -208,7 +208,7 @@ pub(super) fn apart_in_words(found: &Apart) -> String {
 
 fn too_wide_in_words(found: &TooWide) -> String {
     format!(
-        "the outline that was found is no answer: its band (two standard deviations) would be {} where touched, beside a mean radius of {}, and errors of that size are not linear",
+        "the outline that was found is no answer: its band (two standard deviations) would be {} where touched, beside a mean radius of {}: errors of that size are not linear, or the search has not ended",
         length(found.band),
         length(found.mean)
     )

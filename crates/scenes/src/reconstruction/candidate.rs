@@ -18,8 +18,8 @@ pub(super) struct Found {
     pub misfit: f64,
     /// The logarithm of the probability of the readings, but for a constant of the record.
     pub evidence: f64,
-    /// Whether errors as large as its own are linear.
-    pub is_linear: bool,
+    /// Whether its search has come to its end, and errors as large as its own are linear.
+    pub is_sure: bool,
 }
 
 /// Two shapes that differ by no more than this part of a deviation are one.
@@ -149,17 +149,16 @@ impl WholeRecord {
         })
     }
 
-    /// The same, gone on with for as long as it takes; none where it was still on its way after [`MOST_DESCENTS`] of them.
+    /// The same, gone on with until it has come to its end or [`MOST_DESCENTS`] of them were not enough.
     pub fn descend_to_end(&self, start: Unknowns, prior: &[f64], interrupt: &AtomicBool) -> Option<Best> {
-        let mut x = start;
-        for _ in 0..MOST_DESCENTS {
-            let best = self.descend(x, prior, self.times.len(), interrupt)?;
+        let mut best = self.descend(start, prior, self.times.len(), interrupt)?;
+        for _ in 1..MOST_DESCENTS {
             if best.is_settled {
-                return Some(best);
+                break;
             }
-            x = best.x;
+            best = self.descend(best.x, prior, self.times.len(), interrupt)?;
         }
-        None
+        Some(best)
     }
 
     /// The root of the mean square of what is left of a contact, in m, by the sum of its squares.
@@ -207,7 +206,7 @@ impl WholeRecord {
             widened: 1.0,
         };
         let misfit = self.misfit(chi_square, self.times.len());
-        Found { unknowns, covariance, shape, motion, misfit, evidence, is_linear: true }
+        Found { unknowns, covariance, shape, motion, misfit, evidence, is_sure: true }
     }
 
     /// The length by which coefficients are measured beforehand, in m: twice the mean of what was read, from which a body that touches both palms cannot be far.

@@ -104,7 +104,7 @@ impl WholeRecord {
     /// A spline whose search had not ended, to its end; none where it does not come to one.
     fn gone_on(&self, best: &Best, interrupt: &AtomicBool) -> Option<(Found, Best)> {
         let prior = self.spline_prior(&best.x.support);
-        let best = self.descend_to_end(best.x.clone(), &prior, interrupt)?;
+        let best = self.descend_to_end(best.x.clone(), &prior, interrupt).filter(|best| best.is_settled)?;
         Some((self.at_minimum(&best, &prior)?, best))
     }
 

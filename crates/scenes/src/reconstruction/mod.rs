@@ -51,8 +51,8 @@ impl Experiment {
                 contradiction = agreement::contradiction(&self.names(), answer, &whole);
                 if contradiction.is_none() {
                     let coverage = coverage(&record, &told.best);
-                    let is_linear = told.best.is_linear || !record.stated;
-                    let (shape, too_wide) = resolved(told.best.shape, is_linear, &coverage);
+                    let is_sure = told.best.is_sure || !record.stated;
+                    let (shape, too_wide) = resolved(told.best.shape, is_sure, &coverage);
                     let whole = too_wide.is_none().then_some(whole);
                     return Some(Reconstruction {
                         track,
@@ -140,13 +140,17 @@ impl Experiment {
 /// Normals at which a band is looked at.
 const NORMALS: u32 = 360;
 
-/// A shape, unless its errors are not linear, or its band is somewhere wider than its mean radius where it was touched: no linear model reaches so far, and neither does its band.
-fn resolved(shape: ShapeEstimate, is_linear: bool, coverage: &Coverage) -> (Option<ShapeEstimate>, Option<TooWide>) {
+/// A shape, unless its search has not ended or its errors are not linear, or its band is somewhere wider than its mean radius where it was touched: no linear model reaches so far, and neither does its band.
+fn resolved(
+    shape: ShapeEstimate,
+    is_sure: bool,
+    coverage: &Coverage,
+) -> (Option<ShapeEstimate>, Option<TooWide>) {
     let angles = (0..NORMALS).map(|i| std::f64::consts::TAU * f64::from(i) / f64::from(NORMALS));
     let touched = angles.filter(|angle| coverage.contains(*angle));
     let (band, mean) =
         (touched.map(|angle| shape.band(coverage, angle)).fold(0.0, f64::max), shape.support.mean());
-    match !is_linear || band > mean {
+    match !is_sure || band > mean {
         true => (None, Some(TooWide { band, mean })),
         false => (Some(shape), None),
     }

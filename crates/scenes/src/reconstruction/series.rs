@@ -4,7 +4,7 @@
 //! never more than convexity allows; each is weighed by the probability that it gives to the readings, and the shape is the mean of all, with the covariance of the mixture. About one
 //! point, where all is linear, a triangle of the largest order's rows has all others in its corners.
 
-use super::candidate::{Best, Found, Whole, gained};
+use super::candidate::{Found, Whole, gained};
 use super::descent::{Squares, inverse, joined, solved};
 use super::record::{Followed, Unknowns, WholeRecord};
 use nalgebra::{DMatrix, DVector};
@@ -95,7 +95,8 @@ impl WholeRecord {
         let order = *self.orders()[..self.asked()].last()?;
         let first = Belief { order, part: 1.0, decay: 3.0 }.weights(self.size());
         let begin = self.descend_to_end(expanded(start, order), &first, interrupt)?;
-        self.series_about(&begin.x, interrupt)
+        let found = self.series_about(&begin.x, interrupt)?;
+        Some(Found { is_sure: found.is_sure && begin.is_settled, ..found })
     }
 
     /// What each of a few beliefs makes of the readings, with the harmonics that a beginning has at most.
@@ -138,8 +139,8 @@ impl WholeRecord {
         let (order, rows) = (*orders.last()?, self.times.len());
         let mut x = expanded(start, order);
         let mut round = 0;
-        // whether the last descent led anywhere
-        let mut is_moving = true;
+        // whether the last descent led anywhere, and has come to its end
+        let (mut is_moving, mut is_settled) = (true, true);
         loop {
             if interrupt.load(Ordering::Relaxed) {
                 return None;
@@ -157,7 +158,7 @@ impl WholeRecord {
                 let is_worse = self.squares(&there) > self.squares(&motion) + moved.sqrt() + 1.0;
                 let (at, motion) = if is_worse { (x, motion) } else { (mean, there) };
                 let found = self.found(at, (motion, &rows_there), mixture.covariance, mixture.evidence);
-                let found = Found { is_linear: moved <= LINEAR, ..found };
+                let found = Found { is_sure: is_settled && moved <= LINEAR, ..found };
                 return Some((found, mixture.last));
             }
             // what is linear about one point may not be about another: the likeliest belief goes there by itself, from the mean or, where that explains less, from the point
@@ -167,8 +168,9 @@ impl WholeRecord {
             let sums = begins.each_ref().map(|begin| whole.sum(begin).unwrap_or(f64::INFINITY));
             let [mean, point] = begins;
             let begin = if sums[0] <= sums[1] { mean } else { point };
-            let Best { x: next, .. } = self.descend_to_end(begin, &weights, interrupt)?;
-            let next = expanded(&next, order);
+            let best = self.descend_to_end(begin, &weights, interrupt)?;
+            is_settled = best.is_settled;
+            let next = expanded(&best.x, order);
             let there = self.follow(&next, rows, false)?;
             is_moving = self.apart_in_contacts(&motion, &there) > NEAR;
             x = next;

@@ -76,9 +76,9 @@ impl WholeRecord {
             }
         };
         candidates.retain(Found::is_body);
-        // by readings whose deviation nobody states all is linear about what they leave, or nothing
-        if is_stated && candidates.iter().any(|found| found.is_linear) {
-            candidates.retain(|found| found.is_linear);
+        // beside what has ended, and is linear, nothing else is believed; where nobody states a deviation its own size is not known well enough to ask
+        if is_stated && candidates.iter().any(|found| found.is_sure) {
+            candidates.retain(|found| found.is_sure);
         }
         let told = weighed(candidates).map(|told| self.widened(told, is_stated))?;
         (is_stated || self.is_exact(&told.best) || self.is_spread(&told.best)).then_some(told)

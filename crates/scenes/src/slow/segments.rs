@@ -333,8 +333,9 @@ pub fn found_jumps(readings: &SlowReadings, found: &SlowShape) -> Vec<FoundJump>
         }
         if !predicted {
             // it was held against the measurements before, and stays only where they need it; two poses so near each other that nothing is sure to lie between are one
-            let other = pose + shorter(phi0[row] - pose);
-            certain = !followed || is_borne_out(&between.at(1.0), found, &outline, [pose, other]);
+            let from = if followed { pose } else { before };
+            let other = from + shorter(phi0[row] - from);
+            certain = is_borne_out(&between.at(1.0), found, &outline, [from, other]);
         }
         all.push(FoundJump { row, within, turn, predicted, certain });
     }
