@@ -150,13 +150,16 @@ impl WholeRecord {
             let triangle = self.about(&x, &rows_there);
             let mixture = self.weigh(&triangle, orders)?;
             let mean = self.reached(&x, &mixture.value)?;
-            let there = self.follow(&mean, rows, true)?;
-            let moved = self.apart_in_contacts(&motion, &there);
+            let there = self.follow(&mean, rows, true);
+            let moved = there.as_ref().map_or(f64::INFINITY, |there| self.apart_in_contacts(&motion, there));
             round += 1;
             if moved <= NEAR || round == ROUNDS || !is_moving {
-                // a mean that explains less than the point itself is one of what is not linear
-                let is_worse = self.squares(&there) > self.squares(&motion) + moved.sqrt() + 1.0;
-                let (at, motion) = if is_worse { (x, motion) } else { (mean, there) };
+                // a mean that cannot be followed, or explains less than the point itself, is one of what is not linear
+                let most = self.squares(&motion) + moved.sqrt() + 1.0;
+                let (at, motion) = match there.filter(|there| self.squares(there) <= most) {
+                    Some(there) => (mean, there),
+                    None => (x, motion),
+                };
                 let found = self.found(at, (motion, &rows_there), mixture.covariance, mixture.evidence);
                 let found = Found { is_sure: is_settled && moved <= LINEAR, ..found };
                 return Some((found, mixture.last));

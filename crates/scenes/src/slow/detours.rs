@@ -6,11 +6,10 @@
 //! that is fitted to it explains all of them within five deviations as well, and the body jumps less often then, it is the track. What it does not explain stays a jump that descent did
 //! not foretell.
 
-use super::found::{CERTAIN, SlowShape};
+use super::found::{CERTAIN, EXACT, SlowShape};
 use super::outline::Outline;
 use super::readings::SlowReadings;
 use super::segments::{JUMP, found_jumps};
-use super::start::EXACT;
 use super::together::Together;
 use std::f64::consts::{PI, TAU};
 

@@ -7,6 +7,9 @@ use palmistry_bodies::shape::ShapeEstimate;
 /// So many deviations of chi-square are not chance.
 pub(super) const CERTAIN: f64 = 5.0;
 
+/// Exact readings are explained to this part of the mean radius.
+pub(super) const EXACT: f64 = 1e-4;
+
 /// Shape and motion that explain all readings.
 #[derive(Clone, Debug)]
 pub struct SlowShape {

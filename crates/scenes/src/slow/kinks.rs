@@ -4,10 +4,9 @@
 //! ones before leave, and all of it is explained at once. What is free afterwards are few harmonics, and three jumps and an angle a kink, instead of hundreds of harmonics. It is a model like any
 //! other: that a kink is found does not say that the body has one there.
 
-use super::found::SlowShape;
+use super::found::{EXACT, SlowShape};
 use super::outline::{Kink, OF_KINK, Outline};
 use super::readings::SlowReadings;
-use super::start::EXACT;
 use super::together::{Point, Together};
 use palmistry_bodies::shape::SupportSeries;
 use std::f64::consts::{PI, TAU};

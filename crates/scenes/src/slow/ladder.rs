@@ -1,8 +1,8 @@
 //! Which orders of harmonics are tried: raised while G. Schwarz's criterion says that they tell something.
 
-use super::found::SlowShape;
+use super::closure::closed;
+use super::found::{EXACT, SlowShape};
 use super::readings::SlowReadings;
-use super::start::{EXACT, closed};
 use super::together::{Point, Together};
 use palmistry_bodies::shape::SupportSeries;
 

@@ -5,6 +5,7 @@
 //!
 //! Nothing here has seen the body: what a simulation knows comes in through readings alone.
 
+mod closure;
 mod detours;
 mod families;
 mod found;

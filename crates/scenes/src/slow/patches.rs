@@ -1,9 +1,9 @@
 //! Segments as the thesis arranges them (section 3.7): patches of the radius function, and the errors 3.48 and 3.49. For comparison; nothing is found by them.
 
+use super::closure::touched;
 use super::quadrature::SlowTrack;
 use super::readings::SlowReadings;
 use super::segments::FoundJump;
-use super::start::touched;
 use super::thesis::{ThesisMethod, by_thesis};
 use std::f64::consts::TAU;
 

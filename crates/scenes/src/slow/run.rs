@@ -1,7 +1,7 @@
 //! A scene of slow motion, simulated or recorded, and what every way makes of its readings.
 
 use super::detours::without_detours;
-use super::found::SlowShape;
+use super::found::{EXACT, SlowShape};
 use super::keys::COLUMNS;
 use super::kinks::with_kinks;
 use super::ladder::Orders;
@@ -11,7 +11,7 @@ use super::quadrature::{SlowTrack, by_quadrature};
 use super::readings::SlowReadings;
 use super::scene::SlowScene;
 use super::segments::{FoundJump, found_jumps, from_segments};
-use super::start::{EXACT, Vote, from_nothing, from_nothing_briefly, votes};
+use super::start::{Vote, from_nothing, from_nothing_briefly, votes};
 use super::thesis::{ThesisMethod, ThesisTrack, by_thesis};
 use super::together::Together;
 use crate::simulation::{deviation, normal, outline};

@@ -4,11 +4,11 @@
 //! what is left of the readings is what their errors leave. Where it is more, the body lies in another stable pose of the very shape that was found: first the one to which it falls
 //! in the recovered potential, then each other, from each sample on. What remains is no unknown a segment, but a choice among few poses, and all readings are explained at once.
 
-use super::found::{CERTAIN, SlowShape};
+use super::found::{CERTAIN, EXACT, SlowShape};
 use super::ladder::Orders;
 use super::outline::Outline;
 use super::readings::SlowReadings;
-use super::start::{EXACT, from_nothing_briefly};
+use super::start::from_nothing_briefly;
 use super::together::Together;
 use palmistry_bodies::mechanics::resting::stable_poses;
 use palmistry_bodies::shape::SupportSeries;

@@ -4,12 +4,12 @@
 //! is a vote for the height at the first sample; zeros at which the body rests are scattered votes. Where noise drowns the numerator, closure tells: the same direction touched twice has one radius, so that one closed
 //! support function goes through all radii of a track only where the constant is right.
 
-use super::found::SlowShape;
+use super::closure::closed;
+use super::found::{EXACT, SlowShape};
 use super::ladder::Orders;
-use super::quadrature::{Quadrature, SlowTrack};
+use super::quadrature::Quadrature;
 use super::readings::SlowReadings;
 use super::together::Together;
-use palmistry_bodies::shape::{SupportSample, SupportSeries, SupportWeights, fit_support};
 
 /// Votes that lie so near, in parts of the mean contact, are for the same constant.
 const SAME_VOTE: f64 = 2e-3;
@@ -28,9 +28,6 @@ const PARTED: usize = 2;
 
 /// The order of the closed function that is asked for closure.
 const ORDER: usize = 8;
-
-/// Exact readings are explained to this part of the mean radius.
-pub(super) const EXACT: f64 = 1e-4;
 
 /// A constant that a zero of 3.37's numerator tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,35 +83,6 @@ struct Closed {
     height: f64,
     /// The root of the mean square of what is left, in parts of the mean radius.
     left: f64,
-}
-
-/// The normals that a track touched, with their radii.
-pub(super) fn touched(readings: &SlowReadings, track: &SlowTrack) -> Vec<SupportSample> {
-    let half = std::f64::consts::FRAC_PI_2;
-    let rows = readings.palms.iter().zip(&track.phi0).zip(&track.radii);
-    rows.flat_map(|((palms, phi0), radii)| {
-        let angles = [palms[0] - phi0 - half, palms[0] + palms[1] - phi0 - 3.0 * half];
-        [0, 1].map(|i: usize| SupportSample { angle: angles[i], radius: radii[i], weight: 1.0 })
-    })
-    .collect()
-}
-
-/// The closed function of an order through a track, and what is left, in parts of the mean radius.
-pub(super) fn closed(
-    readings: &SlowReadings,
-    track: &SlowTrack,
-    order: usize,
-) -> Option<(SupportSeries, f64)> {
-    let shape = fit_support(&touched(readings, track), SupportWeights::Relative, Some(order))?;
-    // tracks of bodies that are none close, too: what is not convex is left as well
-    let dent = (0..180)
-        .map(|i| -shape.support.radius_of_curvature(std::f64::consts::TAU * f64::from(i) / 180.0))
-        .fold(0.0, f64::max);
-    let samples = touched(readings, track);
-    let off = |sample: &SupportSample| (sample.radius - shape.support.support(sample.angle)[0]).powi(2);
-    let left = (samples.iter().map(off).sum::<f64>() / samples.len() as f64).sqrt();
-    let left = (left + 0.02 * dent) / shape.support.mean();
-    left.is_finite().then(|| (SupportSeries::of_coefficients(&shape.support.coefficients()), left))
 }
 
 /// Heights from which to begin, the best first.

@@ -1,12 +1,13 @@
 //! Many bodies: how often, how well and how fast each way finds a shape.
 
 use super::families::Family;
+use super::found::EXACT;
 use super::ladder::Orders;
 use super::quadrature::by_quadrature;
 use super::run::{readings_of, track_error, without_excess};
 use super::scene::{SlowScene, SlowStudy};
 use super::segments::{FoundJump, found_jumps, from_segments};
-use super::start::{EXACT, from_nothing_within};
+use super::start::from_nothing_within;
 use super::stopwatch::Stopwatch;
 use super::thesis::{ThesisMethod, by_thesis};
 use palmistry_bodies::mechanics::Palm;
