@@ -254,7 +254,7 @@ fn coq_refuses_what_is_made_false_by_one_sign_function_factor_or_index() {
                 for mutant in mutants(written).into_iter().take(6) {
                     let more = format!("{changed}\nclaim mutant.{count}: {mutant}\n");
                     // shapes, units and names still have to fit
-                    if count < 80 && System::parse("mutants", &more, home).is_ok() {
+                    if count < 100 && System::parse("mutants", &more, home).is_ok() {
                         changed = more;
                         count += 1;
                     }

@@ -35,6 +35,7 @@ pub(super) fn without_detours(
     // of two tracks that the measurements do not tell apart the one that a body can have
     let most = found.shape.chi_square + (CERTAIN * found.shape.widened).powi(2);
     for _ in 0..MOST {
+        let mut as_well = None;
         let better = jumps.iter().filter(|jump| !jump.predicted).find_map(|jump| {
             let ways =
                 [true, false].into_iter().flat_map(|forwards| led(&together, &found, jump.row, forwards));
@@ -44,11 +45,21 @@ pub(super) fn without_detours(
                     return None;
                 }
                 let other = along(&together, &found, way.phi0, interrupt);
-                let explains = way.explains || (other.explains(EXACT) && other.shape.chi_square <= most);
                 let left = found_jumps(readings, &other);
-                (explains && left.len() < jumps.len()).then_some((other, left))
+                let chi_square = other.shape.chi_square;
+                let explains = other.explains(EXACT) && chi_square <= most;
+                if left.len() >= jumps.len() || !(way.explains || explains) {
+                    return None;
+                }
+                let other = Some((other, left));
+                if way.explains || chi_square <= found.shape.chi_square {
+                    return other;
+                }
+                as_well = as_well.take().or(other);
+                None
             })
         });
+        let better = better.or(as_well);
         let Some(better) = better else { break };
         (found, jumps) = better;
     }
