@@ -106,8 +106,8 @@ impl Together<'_> {
     /// The same shape with fewer harmonics, where Schwarz's criterion says that the others tell nothing: a search that went up the orders by parts of the readings keeps the highest one that a
     /// part asked for, and harmonics that tell nothing leave a long valley in which it stops far from the body.
     pub fn with_fewer_harmonics(&self, found: SlowShape, interrupt: &dyn Fn() -> bool) -> SlowShape {
-        let parameters = (2.0 * found.track.phi0.len() as f64).ln();
-        let criterion = |of: &SlowShape| of.shape.chi_square + (1 + 2 * of.order) as f64 * parameters;
+        let worth = (2.0 * found.track.phi0.len() as f64).ln();
+        let criterion = |of: &SlowShape| of.shape.chi_square + (1 + 2 * of.order) as f64 * worth;
         let coefficients = found.shape.support.coefficients();
         if !self.is_noisy() || !found.kinks.is_empty() || !found.explains(EXACT) {
             return found;
