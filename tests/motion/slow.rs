@@ -238,6 +238,37 @@ fn a_study_counts_runs_with_jumps() {
     }
 }
 
+/// A study has the errors of the scene's sensor, and runs without a jump where it asks for none to four: none is told of them.
+#[test]
+fn a_study_has_the_errors_of_the_sensor() {
+    let study = |noise: &str, jumps: &str| {
+        let study = format!(
+            "{noise}[study]\nbodies = 2\nfamilies = [\"harmonics\"]\nsamples = [120]\njumps = {jumps}\n"
+        );
+        let folder = folder();
+        let file = write(&folder, "slow.toml", scene(60, BODY, PLAN, &study));
+        let run = palmistry(&["observe", file.to_str().unwrap(), "--studies", "--json", "--no-times"]);
+        (run.status.code(), json(&run))
+    };
+    let off = |noise: &str| {
+        let (code, found) = study(noise, "[0, 4]");
+        assert_eq!(code, Some(0));
+        let row = &found["study"][0];
+        let runs: u64 = row["jumps"].as_array().unwrap().iter().map(|of| of["runs"].as_u64().unwrap()).sum();
+        let wrong = row["jumps"].as_array().unwrap().iter().map(|of| of["false_jumps"].as_u64().unwrap());
+        assert_eq!((runs, wrong.sum::<u64>()), (2, 0), "{row}");
+        row["outline_errors"].as_array().unwrap().iter().map(|off| off.as_f64().unwrap()).fold(0.0, f64::max)
+    };
+    assert!(off("") < 1e-12);
+    let noisy = off("[sensor]\nnoise = 1e-4\n");
+    assert!((1e-6..1e-3).contains(&noisy), "{noisy}");
+    for jumps in ["[0, 0]", "[3, 1]"] {
+        let (code, found) = study("", jumps);
+        assert_eq!(code, Some(2));
+        assert!(found["error"]["message"].as_str().unwrap().contains("no number of jumps"), "{found}");
+    }
+}
+
 /// Pads that are too short end the motion.
 #[test]
 fn a_pad_that_is_too_short_ends_the_motion() {

@@ -18,7 +18,7 @@ pub(super) struct Found {
     pub misfit: f64,
     /// The logarithm of the probability of the readings, but for a constant of the record.
     pub evidence: f64,
-    /// Whether its search has come to its end, and errors as large as its own are linear.
+    /// Whether its search has come to its end, and errors as large as its own are linear, where it is known how large they are.
     pub is_sure: bool,
 }
 

@@ -77,18 +77,13 @@ impl WholeRecord {
         for points in FEWEST..=MOST {
             let nearest = self.nearest(&radii, begins, interrupt);
             let Some((end, best)) = self.by_readings(series, nearest, interrupt) else { break };
-            // what is still on its way has no band: it is no candidate, and no more than a beginning
             let (end, best) = match best.is_settled {
-                true => (end, best),
-                false => match self.gone_on(&best, interrupt) {
-                    Some(settled) => settled,
-                    None => {
-                        begins = with_a_point_more(&best.x.support, points);
-                        continue;
-                    }
-                },
+                true => (Some(end), best),
+                false => self.gone_on(best, interrupt),
             };
             begins = with_a_point_more(&best.x.support, points);
+            // what is still on its way has no band: it is no candidate, and no more than a beginning
+            let Some(end) = end else { continue };
             let before = found.iter().map(|found| found.evidence).fold(f64::NEG_INFINITY, f64::max);
             idle = if end.evidence > before { 0 } else { idle + 1 };
             let explains = |cost: f64| self.is_explained(cost, self.times.len());
@@ -101,11 +96,12 @@ impl WholeRecord {
         found
     }
 
-    /// A spline whose search had not ended, to its end; none where it does not come to one.
-    fn gone_on(&self, best: &Best, interrupt: &AtomicBool) -> Option<(Found, Best)> {
+    /// Where a search goes on to that had not ended, and what it finds there if that is its end.
+    fn gone_on(&self, best: Best, interrupt: &AtomicBool) -> (Option<Found>, Best) {
         let prior = self.spline_prior(&best.x.support);
-        let best = self.descend_to_end(best.x.clone(), &prior, interrupt).filter(|best| best.is_settled)?;
-        Some((self.at_minimum(&best, &prior)?, best))
+        let best = self.descend_to_end(best.x.clone(), &prior, interrupt).unwrap_or(best);
+        let end = best.is_settled.then(|| self.at_minimum(&best, &prior)).flatten();
+        (end, best)
     }
 
     /// Normals that were touched, and the radii there by a series.

@@ -51,8 +51,7 @@ impl Experiment {
                 contradiction = agreement::contradiction(&self.names(), answer, &whole);
                 if contradiction.is_none() {
                     let coverage = coverage(&record, &told.best);
-                    let is_sure = told.best.is_sure || !record.stated;
-                    let (shape, too_wide) = resolved(told.best.shape, is_sure, &coverage);
+                    let (shape, too_wide) = resolved(told.best.shape, told.best.is_sure, &coverage);
                     let whole = too_wide.is_none().then_some(whole);
                     return Some(Reconstruction {
                         track,

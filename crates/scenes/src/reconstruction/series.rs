@@ -29,7 +29,7 @@ const UNLIKELY: f64 = 1e-6;
 /// All is linear about a point so near to the mean that what is left does not change by more than this.
 const NEAR: f64 = 0.05;
 
-/// Where the mean of all beliefs leaves other contacts than the point by more than this, five deviations squared, errors are not linear and their covariance is none.
+/// Where the mean of all beliefs leaves other contacts than the point by more than this, five deviations squared, errors are not linear and their covariance is none. Where nobody states a deviation its size is not known well enough to ask.
 const LINEAR: f64 = 25.0;
 const ROUNDS: usize = 5;
 
@@ -161,7 +161,7 @@ impl WholeRecord {
                     None => (x, motion),
                 };
                 let found = self.found(at, (motion, &rows_there), mixture.covariance, mixture.evidence);
-                let found = Found { is_sure: is_settled && moved <= LINEAR, ..found };
+                let found = Found { is_sure: is_settled && (moved <= LINEAR || !self.stated), ..found };
                 return Some((found, mixture.last));
             }
             // what is linear about one point may not be about another: the likeliest belief goes there by itself, from the mean or, where that explains less, from the point

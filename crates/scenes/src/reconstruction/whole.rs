@@ -76,8 +76,8 @@ impl WholeRecord {
             }
         };
         candidates.retain(Found::is_body);
-        // beside what has ended, and is linear, nothing else is believed; where nobody states a deviation its own size is not known well enough to ask
-        if is_stated && candidates.iter().any(|found| found.is_sure) {
+        // beside a search that has ended, with errors that are linear, no other is believed
+        if candidates.iter().any(|found| found.is_sure) {
             candidates.retain(|found| found.is_sure);
         }
         let told = weighed(candidates).map(|told| self.widened(told, is_stated))?;

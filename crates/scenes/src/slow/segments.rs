@@ -287,12 +287,13 @@ impl Between {
         Together::of(&self.at)
     }
 
-    /// By how many samples the measurements leave open where a body falls: five deviations of the slope of the potential where the pose ends, over what the palms' way changes of it.
+    /// By how many samples the measurements leave open where a body falls: five deviations of the slope of the potential where the pose ends, over what the palms' way changes of it; all of them where the shape has no covariance.
     fn spread(&mut self, fall: &Fall, found: &SlowShape, outline: &Outline) -> f64 {
         let pose = fall.turn[0];
         let mut slope = |part: f64| self.at(part).bent(0, pose, outline, &found.shape.covariance)[0];
         let (here, change) = (slope(fall.at), slope(1.0).value - slope(0.0).value);
-        CERTAIN * here.deviation / change.abs()
+        let spread = CERTAIN * here.deviation / change.abs();
+        if spread.is_nan() { f64::INFINITY } else { spread }
     }
 }
 
@@ -371,5 +372,11 @@ mod tests {
         assert!(!unsure[0].certain && unsure[0].row == sure[0].row, "{unsure:?}");
         let [first, last] = unsure[0].within;
         assert!(first <= less[0].within[0] && last >= less[0].within[1], "{unsure:?}");
+        // a triangle that has no inverse leaves no covariance
+        let unknown = jumps(f64::INFINITY);
+        assert!(
+            !unknown[0].certain && unknown[0].within == [1, experiment.readings.rows() - 1],
+            "{unknown:?}"
+        );
     }
 }

@@ -66,7 +66,7 @@ pub struct JumpTally {
     pub located: usize,
     /// The runs whose measurements are explained by what was found.
     pub explained: usize,
-    /// Of these the ones with a jump that never happened: a certain one, as [`FoundJump::certain`](super::FoundJump) says, that no jump of the body is next to.
+    /// Of these the ones with a jump that never happened: a certain one, as [`FoundJump::certain`](super::FoundJump) says, between whose samples the body did not jump.
     pub false_jumps: usize,
     /// Of the runs that are explained the ones with a jump of the body between two samples of which nothing is said.
     pub missed: usize,
