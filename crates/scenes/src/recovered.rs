@@ -17,7 +17,7 @@ pub struct Reconstruction {
     pub whole: Option<WholeMotion>,
     /// Where neither a motion that explains all readings at once nor windows that fit are an answer, because they contradict each other: then there is no shape.
     pub contradiction: Option<Contradiction>,
-    /// Where the shape that was found is none, because its band is wider than the body, its errors are not linear or its search has not ended.
+    /// Where the shape that was found is none, because its band is wider than the body, its errors are not linear, its search has not ended, or its motion leaves more than the stated noise.
     pub too_wide: Option<TooWide>,
     /// Where no motion was sought that explains all readings at once, because its samples are too far apart.
     pub apart: Option<Apart>,

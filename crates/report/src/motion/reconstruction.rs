@@ -208,7 +208,7 @@ pub(super) fn apart_in_words(found: &Apart) -> String {
 
 fn too_wide_in_words(found: &TooWide) -> String {
     format!(
-        "the outline that was found is no answer: its band (two standard deviations) would be {} where touched, beside a mean radius of {}: errors of that size are not linear, or the search has not ended",
+        "the outline that was found is no answer: its band (two standard deviations) would be {} where touched, beside a mean radius of {}: errors of that size are not linear, the search has not ended, or the motion that was found leaves more than the stated noise",
         length(found.band),
         length(found.mean)
     )

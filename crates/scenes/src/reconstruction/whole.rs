@@ -75,12 +75,18 @@ impl WholeRecord {
                 all
             }
         };
-        candidates.retain(Found::is_body);
+        // where none of them is a body the readings tell none, whatever else explains them
+        if candidates.iter().any(Found::is_body) {
+            candidates.retain(Found::is_body);
+        } else {
+            candidates.iter_mut().for_each(|found| found.is_sure = false);
+        }
         // beside a search that has ended, with errors that are linear, no other is believed
         if candidates.iter().any(|found| found.is_sure) {
             candidates.retain(|found| found.is_sure);
         }
-        let told = weighed(candidates).map(|told| self.widened(told, is_stated))?;
+        let mut told = weighed(candidates).map(|told| self.widened(told, is_stated))?;
+        told.best.is_sure &= self.is_told(&told.best);
         (is_stated || self.is_exact(&told.best) || self.is_spread(&told.best)).then_some(told)
     }
 
@@ -164,10 +170,15 @@ impl WholeRecord {
         best.filter(|_| !stop())
     }
 
-    /// Other series that explain readings with noise as large as these: where a band is wide the motion that was met first need not be the likeliest, nor the only one. A search that believes
+    /// Whether what is left is noise, where it is stated how large that is. Deviations about a motion that explains less are those of another one.
+    fn is_told(&self, found: &Found) -> bool {
+        !self.stated || self.is_explained(found.shape.chi_square, self.times.len())
+    }
+
+    /// Other series that explain readings with noise as large as these: where one explains them not, or its band is wide, the motion that was met first need not be the likeliest, nor the only one. A search that believes
     /// little of the harmonics runs far along what the readings hardly tell; so each begins with few harmonics and much belief, the likeliest go on.
     fn elsewhere(&self, starts: &[Unknowns], found: &Found, interrupt: &AtomicBool) -> Vec<Found> {
-        if !self.is_wide(found) {
+        if !self.is_wide(found) && self.is_told(found) {
             return Vec::new();
         }
         let discs = self.best_discs(interrupt).into_iter();
