@@ -4,7 +4,7 @@
 
 From a verdict file (`palmistry prove proofs/ --verdicts FILE`) only witnesses, minors and boxes are taken; the claims that
 they are about are read anew from the proof files (`proof_file`), into a graph of expressions (`graph`). `confirmed`: the
-evidence implies the verdict. `half confirmed`: one half of it, such as that a rank is no less. `consistent`: nothing speaks
+evidence implies the verdict, or both sides of an equation are one once they are multiplied out. `half confirmed`: one half of it, such as that a rank is no less. `consistent`: nothing speaks
 against it at random points modulo primes. What is not read, or takes too much work, is `not checked`, and why.
 The exit status is 1 where something is not confirmed, and 2 for what is no verdict file.
 """
@@ -21,6 +21,7 @@ from operator import sub
 
 from .graph import (MADE, RUN, Expression, Interval, Map, Modulo, Node, Spent, call, derivation, enclosed, forget, number, put_in, refuse,
                     short, spend, symbol)
+from .multiplied import are_zero
 from .proof_file import BYTES, HOLDS, System, determinant, each, entries, read_text, spelled
 from .proof_parser import compact, parts
 
@@ -139,6 +140,15 @@ def at_random(system, record, _, seed):
         if found == POINTS:
             return of_a_rank(system, of, claimed, least, is_proved, f"{found} points modulo primes")
     return refuse(f"it has values at {found} of {TRIES} random points")
+
+def proved(system, record, evidence, seed):
+    """What is so at random points, and is shown for all states where it is an equation that can be multiplied out."""
+    found = at_random(system, record, evidence, seed)
+    asked, of, _, conditions = system.statement(system.claims[record["id"]])
+    if found[0] != "consistent" or asked != "=" or record["verdict"] != "proved":
+        return found
+    given = [gap for relation in conditions if relation[1] == "=" for gap in gaps(relation)]
+    return ("confirmed", "multiplied out") if are_zero(system, gaps(of), given) else found
 
 def of_a_rank(system, of, claimed, least, is_proved, where):
     """What a minor that is not zero at a point implies: at almost all states the rank is no less."""
@@ -381,7 +391,7 @@ def check(record, folder, systems, seed):
         bound(system, record, kind)
         if kind == "claimed_rank" and evidence["word"] != record["verdict"]:
             doubt("evidence of another verdict")
-        checks = {"refuted": refuted, "rank": at_states, "boxes": boxes}
+        checks = {"refuted": refuted, "rank": at_states, "boxes": boxes, "proved": proved}
         return checks.get(kind, at_random)(system, record, evidence, seed)
     except Exception as why:  # whatever a damaged record or file leads to
         word = "not confirmed" if isinstance(why, Doubt) else "not checked"

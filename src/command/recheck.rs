@@ -13,9 +13,9 @@ use std::path::PathBuf;
 /// Checks a file of verdicts that 'prove', 'rank' or 'certify' wrote with '--verdicts', against the proof files that it names.
 ///
 /// Each claim is read from its proof file. A refutation is evaluated again at its witness, a certified rank by its minor and its
-/// kernel, a certificate box by box: these are confirmed or not. Of a rank that is not full, one half: that it is no less.
-/// A proof cannot be repeated by evaluation: it is consistent where both sides agree at further states. Exit status 0 only
-/// when nothing failed.
+/// kernel, a certificate box by box: these are confirmed or not. An equation is confirmed where its two sides are one once they are
+/// multiplied out, a generic rank and what is observable by elimination among the expressions themselves. What takes too much
+/// work for that is tried at further states, and is half confirmed or consistent. Exit status 0 only when nothing failed.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry prove mysystem.proof --verdicts claims.json && palmistry recheck claims.json

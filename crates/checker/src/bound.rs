@@ -1,13 +1,15 @@
 //! A verdict held to its claim: the claim is read from the proof file, its sides and rows are built anew, and the verdict is
 //! confirmed only where its evidence implies it.
 
-use super::binding::{ClaimKind, ClaimParts, RecordedWord};
+use super::binding::{ClaimKind, ClaimParts, ClaimSense, RecordedWord};
+use super::bound_span::{Asked, is_shown};
 use super::checking::{Checking, operations};
 use super::claim::{BuiltClaim, Subject, sides, statement};
 use super::claimed_rank::ClaimedWord;
-use super::doubt::{Doubt, Effort, Finding, Unchecked};
+use super::doubt::{Doubt, Effort, Finding, Ground, Unchecked};
 use super::identity::StatedIdentity;
 use super::listing::Listing;
+use super::normal::{Equations, follow};
 use super::record::{Evidence, VerdictRecord};
 use super::sources::source_digest;
 use super::state::{ExactCoordinate, ExactState, Ratio};
@@ -15,15 +17,22 @@ use super::witness::Refutation;
 use palmistry_lang::{System, in_one_line};
 use palmistry_math::expression::syntax::Relation;
 
+/// The work on multiplying out the sides of one claim.
+const WORK: u64 = 1 << 23;
+
 /// Checks one verdict against its proof file.
 pub(super) fn check(record: &VerdictRecord, with: Checking<'_>) -> Finding {
-    try_check(record, with).unwrap_or_else(Finding::NotConfirmed)
+    match try_check(record, with) {
+        Ok(finding) => finding,
+        // nothing was said that could be doubted
+        Err(_) if matches!(record.evidence, Evidence::Unchecked(_)) => {
+            Finding::NotChecked(Unchecked::Nothing)
+        }
+        Err(doubt) => Finding::NotConfirmed(doubt),
+    }
 }
 
 fn try_check(record: &VerdictRecord, with: Checking<'_>) -> Result<Finding, Doubt> {
-    if let Evidence::Unchecked(_) = record.evidence {
-        return Ok(Finding::NotChecked(Unchecked::Nothing));
-    }
     let source = match with.sources.system(&record.file) {
         Ok(source) => source,
         Err(why) => return Ok(Finding::NotChecked(Unchecked::NoProofFile(why))),
@@ -63,7 +72,8 @@ fn of_a_claim(record: &VerdictRecord, system: &mut System, with: Checking<'_>) -
             (rank.word == ClaimedWord::Proved) == (record.verdict == RecordedWord::Proved)
         }
         Evidence::Rank(_) => true,
-        Evidence::Boxes(_) | Evidence::Unchecked(_) => false,
+        Evidence::Unchecked(_) => true,
+        Evidence::Boxes(_) => false,
     };
     if !fits || record.verdict == RecordedWord::Found {
         return Err(Doubt::OtherClaim("the evidence is of another kind than the verdict"));
@@ -84,9 +94,12 @@ fn of_a_claim(record: &VerdictRecord, system: &mut System, with: Checking<'_>) -
             near(system, &claim, &record.evidence, with)
         }
         (
-            Subject::Matrix { .. } | Subject::System { .. } | Subject::Functions { .. },
-            Evidence::Proved(_),
-        ) => Ok(Finding::NotChecked(Unchecked::StepOfAProof)),
+            Subject::Matrix { claimed, .. } | Subject::System { claimed },
+            Evidence::Proved(_) | Evidence::Unchecked(_),
+        ) => without_states(record, system, &claim, Some(*claimed), with),
+        (Subject::Functions { .. }, Evidence::Proved(_) | Evidence::Unchecked(_)) => {
+            without_states(record, system, &claim, None, with)
+        }
         (
             Subject::Matrix { .. } | Subject::System { .. } | Subject::Functions { .. },
             Evidence::ClaimedRank(_),
@@ -94,9 +107,29 @@ fn of_a_claim(record: &VerdictRecord, system: &mut System, with: Checking<'_>) -
         | (Subject::Matrix { .. } | Subject::System { .. } | Subject::Functions { .. }, Evidence::Rank(_)) => {
             super::bound_rank::of_a_claim(record, system, &claim, with)
         }
-        (Subject::Other, _) => Ok(Finding::NotChecked(Unchecked::Nothing)),
+        (Subject::Other, _) | (_, Evidence::Unchecked(_)) => Ok(Finding::NotChecked(Unchecked::Nothing)),
         _ => Err(Doubt::OtherClaim("the evidence is of another kind than the claim")),
     }
+}
+
+/// What a generic claim about a rank or about functions comes to where no state is at hand, or an equation that is a step of its proof.
+fn without_states(
+    record: &VerdictRecord,
+    system: &mut System,
+    claim: &BuiltClaim,
+    rank: Option<usize>,
+    with: Checking<'_>,
+) -> Result<Finding, Doubt> {
+    let asked = Asked { rank, given: None, is_generic: false, is_seen: record.asked.what == ClaimKind::Observable };
+    let is_asked =
+        record.asked.sense == ClaimSense::Generic && record.verdict == RecordedWord::Proved;
+    if is_asked && is_shown(system, claim, asked, with)? {
+        return Ok(Finding::Shown(Ground::Eliminated));
+    }
+    Ok(Finding::NotChecked(match record.evidence {
+        Evidence::Unchecked(_) => Unchecked::Nothing,
+        _ => Unchecked::StepOfAProof,
+    }))
 }
 
 fn refuted(
@@ -148,7 +181,21 @@ fn proved(
         within: None,
         ..found.clone()
     };
-    Ok(own.check(with.seed, with.effort))
+    let finding = own.check(with.seed, with.effort);
+    if !matches!(finding, Finding::Consistent { .. }) {
+        return Ok(finding);
+    }
+    let equations = Equations {
+        listing: &own.listing,
+        sides: &own.sides,
+        conditions: &own.conditions,
+        requirements: &own.requirements,
+    };
+    Ok(match follow(equations, &with.effort.limited(WORK)) {
+        Ok(true) => Finding::Shown(Ground::MultipliedOut),
+        // what takes too much work was not shown
+        _ => finding,
+    })
 }
 
 /// Two numbers and how near they are, at the values that the file gives.

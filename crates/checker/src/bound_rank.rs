@@ -1,14 +1,17 @@
 //! Ranks held to what the proof file says: rows are built anew, and what is left out of the evidence is not taken for granted.
 
 use super::binding::{ClaimKind, ClaimSense, RecordedWord, listed_statement};
+use super::bound_span::{Asked, is_shown};
 use super::checking::{Checking, operations};
 use super::claim::{BuiltClaim, ListedClaim, OWN_ROWS, Subject, further_rows, numbered_row, rows_of_words};
 use super::claimed_rank::Tried;
-use super::doubt::{Doubt, Effort, Finding, Half, Unchecked};
+use super::doubt::{Doubt, Effort, Finding, Ground, Half, Missing, Unchecked};
 use super::listing::{Listing, Step};
 use super::minor::CertifiedRank;
+use super::normal::{Equations, states_on_parts};
 use super::record::{Evidence, VerdictRecord};
-use super::state::ExactCoordinate;
+use super::state::{ExactCoordinate, ExactState, Ratio};
+use dashu::rational::RBig;
 use super::witness::holds;
 use palmistry_lang::{System, Value};
 use palmistry_math::expression::NodeId;
@@ -56,6 +59,75 @@ pub(super) fn of_a_claim(
     };
     let is_of_words = !given.words.iter().any(|word| of_functions.contains(word));
     let own = own_matrix(system, claim, given)?;
+    let is_refuted = record.verdict == RecordedWord::Refuted;
+    let is_generic = is_generic(claim, &own);
+    let rows = own.matrix.clone();
+    let finding = by_states(record, claim, (claimed, is_of_words), own, with)?;
+    let is_open = matches!(finding, Finding::HalfConfirmed(_) | Finding::Consistent { .. });
+    let rank = match (&record.evidence, given.states.as_slice()) {
+        (Evidence::ClaimedRank(_), [state]) if claimed.is_some() => Some(state.rank),
+        (Evidence::ClaimedRank(_), _) if !is_refuted => None,
+        _ => return Ok(finding),
+    };
+    let is_seen = record.asked.what == ClaimKind::Observable;
+    if !is_open || record.asked.sense != ClaimSense::Generic {
+        return Ok(finding);
+    }
+    let is_full = rank.is_some_and(|rank| rank == rows.columns.len());
+    if is_full && is_rational(&rows) && is_full_on_each_part(system, &rows, with)? {
+        return Ok(Finding::Shown(Ground::EachPart));
+    }
+    let asked = Asked { rank, given: Some(given), is_generic, is_seen };
+    if is_shown(system, claim, asked, with)? {
+        return Ok(Finding::Shown(Ground::Eliminated));
+    }
+    Ok(finding)
+}
+
+/// Whether the rank is full at a state of each part of the set on which the conditions hold.
+fn is_full_on_each_part(
+    system: &System,
+    rows: &CertifiedRank,
+    with: Checking<'_>,
+) -> Result<bool, Doubt> {
+    let [known] = rows.states.as_slice() else { return Ok(false) };
+    // what the state gives by an operation may be free here, and the other way round
+    let mut like = known.state.clone();
+    for (name, value) in &mut like {
+        if matches!(value, ExactCoordinate::Step(_)) {
+            let is_angle = system.find_symbol(name).is_some_and(|symbol| system.is_angle(symbol));
+            let [none, one] = [RBig::ZERO, RBig::ONE].map(Ratio);
+            *value = match is_angle {
+                true => ExactCoordinate::Angle { sin: none, cos: one },
+                false => ExactCoordinate::Number(one),
+            };
+        }
+    }
+    let states = Equations {
+        listing: &rows.listing,
+        sides: &[],
+        conditions: &rows.conditions,
+        requirements: &rows.requirements,
+    };
+    let effort = with.effort.limited(TRIED);
+    let parts = match states_on_parts(states, &rows.rows, (&like, with.seed), &effort) {
+        Ok(parts) => parts,
+        Err(Missing::Effort | Missing::Refused { .. }) => return Ok(false),
+        Err(other) => return Err(other.into()),
+    };
+    let full = rows.columns.len();
+    let is_full = |state: &ExactState| rows.rank_at(state, &effort).is_ok_and(|rank| rank == full);
+    Ok(parts.is_some_and(|parts| !parts.is_empty() && parts.iter().all(|part| part.iter().any(is_full))))
+}
+
+/// The same by what was found at states.
+fn by_states(
+    record: &VerdictRecord,
+    claim: &BuiltClaim,
+    (claimed, is_of_words): (Option<usize>, bool),
+    own: OwnMatrix,
+    with: Checking<'_>,
+) -> Result<Finding, Doubt> {
     let is_refuted = record.verdict == RecordedWord::Refuted;
     match (&record.evidence, claimed) {
         (Evidence::ClaimedRank(found), Some(_)) if record.asked.sense == ClaimSense::Generic => {
@@ -355,7 +427,13 @@ fn is_generic(claim: &BuiltClaim, own: &OwnMatrix) -> bool {
     let by_numbers = |state: &super::minor::RankedState| {
         !state.state.values().any(|value| matches!(value, ExactCoordinate::Step(place) if !matches!(steps.get(*place), Some(Step::Constant(_)))))
     };
-    let mut open: Vec<usize> = own.matrix.rows.iter().flatten().copied().collect();
+    is_open && is_rational(&own.matrix) && own.matrix.states.iter().all(by_numbers)
+}
+
+/// Whether the entries are quotients of sums and products of symbols, sines, cosines and exponentials.
+fn is_rational(matrix: &CertifiedRank) -> bool {
+    let steps = matrix.listing.steps();
+    let mut open: Vec<usize> = matrix.rows.iter().flatten().copied().collect();
     let mut met = vec![false; steps.len()];
     while let Some(place) = open.pop() {
         let Some(known) = met.get_mut(place) else { return false };
@@ -369,5 +447,5 @@ fn is_generic(claim: &BuiltClaim, own: &OwnMatrix) -> bool {
         }
         open.extend(steps[place].operands());
     }
-    is_open && own.matrix.states.iter().all(by_numbers)
+    true
 }

@@ -17,7 +17,7 @@ const HIGHEST_ORDER: usize = 64;
 pub(super) const OWN_ROWS: &str = "rows";
 
 /// Two nodes that are compared.
-type Compared = (NodeId, Relation, NodeId);
+pub(super) type Compared = (NodeId, Relation, NodeId);
 
 /// What a claim compares.
 #[derive(Clone, Debug)]

@@ -43,8 +43,8 @@ impl Missing {
 #[derive(Debug)]
 pub struct Effort {
     left: Arc<AtomicU64>,
-    /// Of what it is a part, from which as much is taken.
-    whole: Option<Arc<AtomicU64>>,
+    /// Of what it is a part, from all of which as much is taken.
+    wholes: Vec<Arc<AtomicU64>>,
 }
 
 impl Default for Effort {
@@ -60,13 +60,19 @@ const LEAST_PART: u64 = 1 << 30;
 impl Effort {
     /// So much and no more.
     pub fn new(operations: u64) -> Self {
-        Effort { left: Arc::new(AtomicU64::new(operations)), whole: None }
+        Effort { left: Arc::new(AtomicU64::new(operations)), wholes: Vec::new() }
     }
 
     /// The part of each of so many verdicts: one that asks for too much leaves the others theirs.
     pub fn part(&self, verdicts: usize) -> Effort {
         let each = self.left.load(Ordering::Relaxed) / (verdicts.max(1) as u64);
-        Effort { left: Arc::new(AtomicU64::new(each.max(LEAST_PART))), whole: Some(self.left.clone()) }
+        self.limited(each.max(LEAST_PART))
+    }
+
+    /// No more than so much of it.
+    pub fn limited(&self, operations: u64) -> Effort {
+        let wholes = std::iter::once(&self.left).chain(&self.wholes).cloned().collect();
+        Effort { left: Arc::new(AtomicU64::new(operations)), wholes }
     }
 
     /// Takes some of it.
@@ -75,7 +81,7 @@ impl Effort {
     /// Where there is not so much left.
     pub fn spend(&self, operations: u64) -> Result<(), Missing> {
         let take = |left: u64| left.checked_sub(operations);
-        for budget in std::iter::once(&self.left).chain(&self.whole) {
+        for budget in std::iter::once(&self.left).chain(&self.wholes) {
             budget.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take).map_err(|_| Missing::Effort)?;
         }
         Ok(())
@@ -213,6 +219,18 @@ impl Doubt {
     }
 }
 
+/// By what a verdict was shown without states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // messages say it
+pub enum Ground {
+    #[error("the difference of both sides is zero once it is multiplied out")]
+    MultipliedOut,
+    #[error("the rank follows by elimination among the expressions themselves")]
+    Eliminated,
+    #[error("the rank is full at a state of each part of the set on which the conditions hold")]
+    EachPart,
+}
+
 /// Which half of a verdict was found again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // messages say it
@@ -254,6 +272,8 @@ pub enum Finding {
     /// The evidence implies the verdict, and has been found again by evaluation alone. How often something was checked: states,
     /// boxes.
     Confirmed { times: usize },
+    /// The same by exact arithmetic with expressions in the place of states.
+    Shown(Ground),
     /// One half of it was.
     HalfConfirmed(Half),
     /// What was evaluated agrees with the verdict and does not prove it: so many states beyond the one in the file.
@@ -268,7 +288,7 @@ impl Finding {
     /// The finding in words, as `recheck` prints them.
     pub fn word(&self) -> &'static str {
         match self {
-            Finding::Confirmed { .. } => "confirmed",
+            Finding::Confirmed { .. } | Finding::Shown(_) => "confirmed",
             Finding::HalfConfirmed(_) => "half confirmed",
             Finding::Consistent { .. } => "consistent",
             Finding::NotChecked(_) => "not checked",

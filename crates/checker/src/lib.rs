@@ -3,7 +3,7 @@
 //! An engine that refutes, certifies or proves writes down what its verdict rests on: a `Listing` of operations as plain
 //! data, a state in exact numbers, the two sides, a minor. The checker reads the claim from the proof file, builds its sides and
 //! rows anew, and evaluates them naively, one operation after the other: a `Refutation` at its witness, a `CertifiedRank` by its
-//! minor and its kernel, a `StatedIdentity` and a `ClaimedRank` at states of its own choice. What each word means that it says is told in
+//! minor and its kernel, a `StatedIdentity` and a `ClaimedRank` at states of its own choice. Equations and generic ranks it shows by itself, by multiplying out and by elimination (`normal`). What each word means that it says is told in
 //! `book/src/verdicts.md`.
 //!
 //! This floor knows exact numbers ([`palmistry_math::number`]), expressions with their derivatives, and the reader of proof files
@@ -14,6 +14,7 @@
 mod binding;
 mod bound;
 mod bound_rank;
+mod bound_span;
 mod boxes;
 mod checking;
 mod claim;
@@ -26,6 +27,7 @@ mod identity;
 mod listing;
 mod lowering;
 mod minor;
+mod normal;
 mod piece;
 mod record;
 mod sources;
@@ -42,7 +44,7 @@ pub use checking::Checking;
 pub use claimed_rank::{ClaimedRank, ClaimedWord};
 #[doc(hidden)]
 pub use doubt::Missing;
-pub use doubt::{Doubt, Effort, Finding, Half, Unchecked};
+pub use doubt::{Doubt, Effort, Finding, Ground, Half, Unchecked};
 #[doc(hidden)]
 pub use file::LARGEST_FILE;
 pub use file::{CheckedVerdict, Unreadable, VerdictFile};

@@ -51,6 +51,7 @@ pub fn recheck_text(checked: &[CheckedVerdict<'_>]) -> String {
 fn finding_text(finding: &Finding) -> String {
     match finding {
         Finding::Confirmed { times: 1 } => "evaluated again".to_owned(),
+        Finding::Shown(ground) => ground.to_string(),
         Finding::Confirmed { times } => format!("evaluated again at {times} states"),
         Finding::Consistent { states: 0 } => {
             "it agrees with its own state, and no other was found".to_owned()
