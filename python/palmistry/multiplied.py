@@ -1,11 +1,11 @@
-"""Equations by multiplying out: both sides as polynomials with fractions as coefficients, in symbols, sines and cosines, roots, and the inverses of what is divided by.
+"""Equations by multiplying out, and fields that keep a system: both sides as polynomials with fractions as coefficients, in symbols, sines and cosines, roots, and the inverses of what is divided by.
 
 The only relations are those that hold wherever the terms exist: the squares of sine and cosine add up to one, the square of a root is what it is taken of, and what is
 divided by times its inverse is one. So what is zero then is zero at all states."""
 
 from fractions import Fraction
 
-from .graph import Expression, Map, Spent, call, number, put_in, short, spend
+from .graph import Expression, Map, Spent, call, number, put_in, short, spend, symbol
 
 STEPS, BITS = 1_000_000, 16  # products of terms for one equation; bits of an exponent
 MOST = 1 << (BITS - 2)  # exponents are smaller, so that none runs over into the next one
@@ -17,9 +17,10 @@ class Ring:
     """Polynomials as dictionaries from monomials to coefficients; a monomial is one number, with some bits for the exponent of each variable."""
 
     def __init__(self):
-        self.variables, self.squares, self.inverses, self.steps = {}, {}, {}, 0
+        self.variables, self.squares, self.inverses, self.steps, self.most = {}, {}, {}, 0, 0
 
     def variable(self, key):
+        self.most |= MOST << BITS * len(self.variables) if key not in self.variables else 0
         return self.variables.setdefault(key, BITS * len(self.variables))
 
     def times(self, a, b):
@@ -44,7 +45,7 @@ class Ring:
                         of[m - (2 << shift) + n] = of.get(m - (2 << shift) + n, 0) + x * y
                 if self.steps > STEPS:
                     raise TooLong
-        if any(m >> shift & MOST for m in of for shift in self.variables.values()):
+        if any(m & self.most for m in of):
             raise TooLong
         return {m: short(Fraction(x)) for m, x in of.items() if x}
 
@@ -80,8 +81,8 @@ class Ring:
             found = self.times(found, base)
         return found
 
-    def is_zero(self, of):
-        """Whether a polynomial is zero once it is multiplied by all that is divided by, the last inverse first."""
+    def cleared(self, of):
+        """A polynomial multiplied by all that is divided by, the last inverse first."""
         for shift in sorted(self.inverses, reverse=True):
             by = {}
             for m, x in of.items():
@@ -92,7 +93,7 @@ class Ring:
                 for m, x in self.times(part, self.power(self.inverses[shift], most - k)).items():
                     of[m] = of.get(m, 0) + x
             of = {m: x for m, x in of.items() if x}
-        return not of
+        return of
 
 def solved(system, gaps):
     """Symbols by the others, where each gap is linear in one with a number before it: then these are all states; else nothing."""
@@ -121,12 +122,100 @@ def are_zero(system, gaps, conditions):
         return False
     ring, there = Ring(), Map(put_in, given)
     forms = Map(ring.rule)
+    return attempt(lambda: not any(ring.cleared(forms[there[gap]]) for gap in gaps))
+
+def attempt(do):
+    """What is found, or nothing where it takes too much work."""
     try:
-        return all(ring.is_zero(forms[there[gap]]) for gap in gaps)
+        return do()
     except (TooLong, ZeroDivisionError, NotImplementedError):
-        return False
+        return None
     except Spent:
         # what is left for all verdicts ends; what is left for this one was spent on it, and says nothing against it
         if Expression.left < 0:
             raise
-        return False
+        return None
+
+class Fields:
+    """The affine fields that change no output and commute with all fields of a system: what they move no output of any experiment tells.
+
+    Each component is a number times its own column plus a constant, or, of few columns, a combination of all of them. What has to vanish is linear in the coefficients, which
+    are variables of the ring; once divisors are multiplied by, each monomial in the others is an equation for them."""
+
+    def __init__(self, system, columns, seen, moving, is_whole):
+        self.columns, self.ring, self.units = columns, Ring(), [system.unit(name) for name in columns]
+        self.forms, size = Map(self.ring.rule), range(len(columns))
+        self.symbols = [self.forms[symbol(name)] for name in columns]
+        self.unknowns = {(i, j): self.ring.variable((i, j)) for i in size for j in (*(size if is_whole else (i,)), None)}
+        zero = [self.along(x) for x in seen]
+        known = [symbol(name) for name in system.names["state"] if name not in columns]
+        for along in moving:
+            zero += [self.along(along[z]) for z in known]
+            rates = [self.forms[along[symbol(name)]] for name in columns]
+            zero += [self.bracket(i, rates, along[symbol(name)]) for i, name in enumerate(columns)]
+        self.basis = self.solved([self.ring.cleared(x) for x in zero])
+
+    def plus(self, *of):
+        found = {}
+        for part in of:
+            for m, x in part.items():
+                found[m] = found.get(m, 0) + x
+        return {m: x for m, x in found.items() if x}
+
+    def component(self, i):
+        """That of a column, in unknown coefficients."""
+        own = [self.ring.times({1 << at: Fraction(1)}, self.symbols[j] if j is not None else {0: Fraction(1)}) for (k, j), at in self.unknowns.items() if k == i]
+        return self.plus(*own)
+
+    def along(self, node):
+        """The derivative of an expression along the field."""
+        slopes = [unit[node] for unit in self.units]
+        return self.plus(*(self.ring.times(self.component(i), self.forms[slope]) for i, slope in enumerate(slopes) if slope is not number(0)))
+
+    def bracket(self, i, rates, rate):
+        own = [self.ring.times({1 << at: Fraction(-1)}, rates[j]) for (k, j), at in self.unknowns.items() if k == i and j is not None]
+        return self.plus(self.along(rate), *own)
+
+    def solved(self, polynomials):
+        """A basis of the coefficients for which all polynomials are zero."""
+        places = sorted(self.unknowns.values())
+        whole, rows = sum((1 << BITS) - 1 << at for at in places), {}
+        for polynomial in polynomials:
+            for m, x in polynomial.items():
+                rows.setdefault((id(polynomial), m & ~whole), {})[(m & whole).bit_length() - 1] = x
+        basis = {}
+        for row in rows.values():
+            while common := next((at for at in row if at in basis), None):
+                self.take(row, basis[common], row[common])
+            if row:
+                pivot, x = next(iter(row.items()))
+                row = {at: y / x for at, y in row.items()}
+                for other in basis.values():
+                    if pivot in other:
+                        self.take(other, row, other[pivot])
+                basis[pivot] = row
+        free = [at for at in places if at not in basis]
+        return [{at: Fraction(1), **{pivot: -row[at] for pivot, row in basis.items() if at in row}} for at in free]
+
+    def take(self, row, other, by):
+        spend(len(other))
+        for at, x in other.items():
+            row[at] = short(row.get(at, 0) - by * x)
+            if not row[at]:
+                del row[at]
+
+    def values(self, point, field):
+        """The components of a field at a point modulo a prime."""
+        residue = lambda x: x.numerator * pow(x.denominator, -1, point.prime)
+        at = lambda j: 1 if j is None else point[symbol(self.columns[j])]
+        return [sum(residue(field[place]) * at(j) for (k, j), place in self.unknowns.items() if k == i and place in field) % point.prime
+                for i in range(len(self.columns))]
+
+    def is_kept(self, node):
+        """Whether no field moves an expression."""
+        moved = self.ring.cleared(self.along(node))
+        rows = {}
+        for m, x in moved.items():
+            at = next(place for place in self.unknowns.values() if m >> place & 1)
+            rows.setdefault(m - (1 << at), []).append((at, x))
+        return all(sum(x * field.get(at, 0) for at, x in row) == 0 for row in rows.values() for field in self.basis)

@@ -21,12 +21,12 @@ from operator import sub
 
 from .graph import (MADE, RUN, Expression, Interval, Map, Modulo, Node, Spent, call, derivation, enclosed, forget, number, put_in, refuse,
                     short, spend, symbol)
-from .multiplied import are_zero
+from .multiplied import Fields, are_zero, attempt
 from .proof_file import BYTES, HOLDS, System, determinant, each, entries, read_text, spelled
 from .proof_parser import compact, parts
 
 PRIMES = (1 << 61) - 1, (1 << 89) - 1, (1 << 107) - 1
-POINTS, TRIES, WORDS, PIECES = 4, 40, 200, 500  # compared; drawn; words; pieces of a box
+POINTS, TRIES, WORDS, PIECES, WIDE = 4, 40, 200, 500, 8  # compared; drawn; words; pieces of a box; columns of fields with all coefficients
 MOST, FEE = 1_000_000, 100  # the work on one graph, behind which a new one is begun; of each record, whatever it is
 LARGEST, VALUES, DIGITS = 1 << 28, 1 << 25, 40  # bytes of a verdict file; its values, brackets for eight; digits of a number
 KINDS = "refuted", "proved", "rank", "claimed_rank", "boxes", "unchecked"
@@ -142,13 +142,41 @@ def at_random(system, record, _, seed):
     return refuse(f"it has values at {found} of {TRIES} random points")
 
 def proved(system, record, evidence, seed):
-    """What is so at random points, and is shown for all states where it is an equation that can be multiplied out."""
+    """What is so at random points, and is shown for all states where it is an equation that can be multiplied out, or almost all where fields that keep the system tell the rest."""
     found = at_random(system, record, evidence, seed)
     asked, of, _, conditions = system.statement(system.claims[record["id"]])
-    if found[0] != "consistent" or asked != "=" or record["verdict"] != "proved":
+    if found[0] not in ("consistent", "half confirmed") or record["verdict"] != "proved":
         return found
-    given = [gap for relation in conditions if relation[1] == "=" for gap in gaps(relation)]
-    return ("confirmed", "multiplied out") if are_zero(system, gaps(of), given) else found
+    if asked == "=":
+        given = [gap for relation in conditions if relation[1] == "=" for gap in gaps(relation)]
+        return ("confirmed", "multiplied out") if are_zero(system, gaps(of), given) else found
+    is_meant = record["asked"]["sense"] == "generic" and not conditions and not (asked == "rank" and of)
+    is_shown = is_meant and any(by_fields(system, asked, of, seed, is_whole) for is_whole in (False, True))
+    return ("confirmed", "by the fields that keep the system") if is_shown else found
+
+def by_fields(system, asked, of, seed, is_whole):
+    """Whether a rank is no more than was found, or functions are observable or not, by fields that keep the system; a rank that is no less at one point modulo a prime is no less at almost all states."""
+    columns, moving = system.names["state"] + system.names["unknown"], motion(system, [])
+    if is_whole and len(columns) > WIDE or columns != system.columns():
+        return False
+    fields = attempt(lambda: Fields(system, columns, *moving, is_whole))
+    if not fields or not fields.basis:
+        return False
+    for point in points([], seed):
+        with suppress(ZeroDivisionError):
+            basis = {}
+            dimension = sum(adds(fields.values(point, field), basis, point.prime) for field in fields.basis)
+            if asked == "unobservable":
+                moved = [point.gradient(x, columns) for x in of]
+                return not point.guessed and all(any(dot(row, fields.values(point, field), point.prime) for field in fields.basis) for row in moved)
+            basis = {}
+            rank = sum(adds(row, basis, point.prime) for row in codistribution(system, point, moving, 0))
+            if point.guessed or rank + dimension != len(columns):
+                return False
+            return asked == "rank" or bool(attempt(lambda: all(fields.is_kept(x) for x in of)))
+    return False
+
+def dot(row, other, prime): return sum(x * y for x, y in zip(row, other)) % prime
 
 def of_a_rank(system, of, claimed, least, is_proved, where):
     """What a minor that is not zero at a point implies: at almost all states the rank is no less."""
@@ -391,7 +419,7 @@ def check(record, folder, systems, seed):
         bound(system, record, kind)
         if kind == "claimed_rank" and evidence["word"] != record["verdict"]:
             doubt("evidence of another verdict")
-        checks = {"refuted": refuted, "rank": at_states, "boxes": boxes, "proved": proved}
+        checks = {"refuted": refuted, "rank": at_states, "boxes": boxes, "proved": proved, "claimed_rank": proved}
         return checks.get(kind, at_random)(system, record, evidence, seed)
     except Exception as why:  # whatever a damaged record or file leads to
         word = "not confirmed" if isinstance(why, Doubt) else "not checked"

@@ -27,6 +27,7 @@ mod orders;
 mod published;
 mod recheck;
 mod series;
+mod shown;
 mod thin;
 mod units;
 mod vectors;

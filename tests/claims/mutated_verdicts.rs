@@ -393,7 +393,6 @@ fn no_verdict_that_turned_false_is_confirmed() {
         "proved, consistent",
         "proved, confirmed",
         "claimed_rank, confirmed",
-        "claimed_rank, half confirmed",
         "claimed_rank, consistent",
         "rank, confirmed",
         "rank, half confirmed",

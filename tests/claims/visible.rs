@@ -2,7 +2,7 @@
 //! rests on, found again by the checker; the same by another way, the rank with the function among the outputs; and what is no
 //! such statement.
 
-use palmistry::checker::{Checking, Effort, Finding, ProofSources, Unchecked, VerdictFile};
+use palmistry::checker::{Checking, Effort, Finding, ProofSources, VerdictFile};
 use palmistry::claim::{Kept, decide_all_keeping};
 use palmistry::{System, decide_all};
 use std::path::Path;
@@ -21,7 +21,7 @@ fn words(model: &str, claims: &[String]) -> Vec<&'static str> {
 }
 
 /// Models with what is seen of them and what is not, by hand: the outputs' derivatives are written down and solved.
-const MODELS: [(&str, &[&str], &[&str]); 15] = [
+pub(crate) const MODELS: [(&str, &[&str], &[&str]); 15] = [
     // c x, its rate -k c x: k and the product
     (
         "state x param c, k unknown drift f x' = -k*x output c*x",
@@ -188,11 +188,12 @@ fn the_checker_finds_it_again() {
     let checked = file.check(with, &|| ());
     for verdict in &checked {
         let finding = &verdict.finding;
-        assert!(
-            matches!(finding, Finding::Consistent { .. } | Finding::NotChecked(Unchecked::StepOfAProof)),
-            "{}: {finding:?}",
-            verdict.record.id
-        );
+        // what is proved is shown by the fields that keep the outputs; ranks at a state say nothing of other words
+        let is_as_it_was = match verdict.record.id.as_str() {
+            "a" | "b" => matches!(finding, Finding::Shown(_)),
+            _ => matches!(finding, Finding::Consistent { .. }),
+        };
+        assert!(is_as_it_was, "{}: {finding:?}", verdict.record.id);
     }
     // k is put in the place of c: then it is seen, and the ranks at the state are others
     let forged = file.text().unwrap();

@@ -2,7 +2,7 @@
 //! confirmed only where its evidence implies it.
 
 use super::binding::{ClaimKind, ClaimParts, ClaimSense, RecordedWord};
-use super::bound_span::{Asked, is_shown};
+use super::bound_span::{Asked, is_shown, pole_is_shown};
 use super::checking::{Checking, operations};
 use super::claim::{BuiltClaim, Subject, sides, statement};
 use super::claimed_rank::ClaimedWord;
@@ -97,6 +97,14 @@ fn of_a_claim(record: &VerdictRecord, system: &mut System, with: Checking<'_>) -
             Subject::Matrix { claimed, .. } | Subject::System { claimed },
             Evidence::Proved(_) | Evidence::Unchecked(_),
         ) => without_states(record, system, &claim, Some(*claimed), with),
+        (Subject::Pole { expression, factor, order }, Evidence::Unchecked(_)) => {
+            let is_asked = record.verdict == RecordedWord::Proved;
+            let asked = ((*expression, *factor), *order);
+            Ok(match is_asked && pole_is_shown(system, &claim, asked, with)? {
+                true => Finding::Shown(Ground::MultipliedOut),
+                false => Finding::NotChecked(Unchecked::Nothing),
+            })
+        }
         (Subject::Functions { .. }, Evidence::Proved(_) | Evidence::Unchecked(_)) => {
             without_states(record, system, &claim, None, with)
         }
@@ -120,9 +128,9 @@ fn without_states(
     rank: Option<usize>,
     with: Checking<'_>,
 ) -> Result<Finding, Doubt> {
-    let asked = Asked { rank, given: None, is_generic: false, is_seen: record.asked.what == ClaimKind::Observable };
-    let is_asked =
-        record.asked.sense == ClaimSense::Generic && record.verdict == RecordedWord::Proved;
+    let asked =
+        Asked { rank, given: None, is_generic: false, is_seen: record.asked.what == ClaimKind::Observable };
+    let is_asked = record.asked.sense == ClaimSense::Generic && record.verdict == RecordedWord::Proved;
     if is_asked && is_shown(system, claim, asked, with)? {
         return Ok(Finding::Shown(Ground::Eliminated));
     }

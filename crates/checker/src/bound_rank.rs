@@ -11,8 +11,8 @@ use super::minor::CertifiedRank;
 use super::normal::{Equations, states_on_parts};
 use super::record::{Evidence, VerdictRecord};
 use super::state::{ExactCoordinate, ExactState, Ratio};
-use dashu::rational::RBig;
 use super::witness::holds;
+use dashu::rational::RBig;
 use palmistry_lang::{System, Value};
 use palmistry_math::expression::NodeId;
 use palmistry_math::expression::syntax::Relation;
@@ -85,11 +85,7 @@ pub(super) fn of_a_claim(
 }
 
 /// Whether the rank is full at a state of each part of the set on which the conditions hold.
-fn is_full_on_each_part(
-    system: &System,
-    rows: &CertifiedRank,
-    with: Checking<'_>,
-) -> Result<bool, Doubt> {
+fn is_full_on_each_part(system: &System, rows: &CertifiedRank, with: Checking<'_>) -> Result<bool, Doubt> {
     let [known] = rows.states.as_slice() else { return Ok(false) };
     // what the state gives by an operation may be free here, and the other way round
     let mut like = known.state.clone();

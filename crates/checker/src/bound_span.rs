@@ -6,13 +6,13 @@ use super::doubt::{Doubt, Effort, Missing};
 use super::listing::Listing;
 use super::lowering::Lowering;
 use super::minor::CertifiedRank;
-use super::normal::{Closed, Equations, Kept, Moving, Row, Spans, closed, follow, kept, span};
+use super::normal::{Closed, Equations, Kept, Moving, Row, Spans, closed, follow, has_pole, kept, span};
 use palmistry_lang::{System, Time};
 use palmistry_math::expression::syntax::Relation;
 use palmistry_math::expression::{NodeId, Symbol, gradient};
 
 /// The work on one claim.
-const WORK: u64 = 1 << 23;
+const WORK: u64 = 1 << 22;
 
 /// What is to be shown of almost all states.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +39,23 @@ pub(super) fn is_shown(
         // what takes too much work, and what has no value on a part, is not shown
         Err(Doubt::NoValue(Missing::Effort | Missing::Refused { .. })) => Ok(false),
         other => other,
+    }
+}
+
+/// Whether an expression has a pole of an order where a factor vanishes. `false` says nothing.
+pub(super) fn pole_is_shown(
+    system: &System,
+    claim: &BuiltClaim,
+    ((expression, factor), order): ((NodeId, NodeId), i64),
+    with: Checking<'_>,
+) -> Result<bool, Doubt> {
+    let (listed, places) = claim.listed(system, &Listing::default(), |lowering| {
+        Ok((lowering.place(expression)?, lowering.place(factor)?))
+    })?;
+    let states = Equations::without_sides(&listed);
+    match has_pole(states, places, order, &with.effort.limited(WORK)) {
+        Err(Missing::Effort | Missing::Refused { .. }) => Ok(false),
+        other => Ok(other?),
     }
 }
 

@@ -32,7 +32,9 @@ pub(super) enum Subject {
     System { claimed: usize },
     /// Functions whose differentials lie in it, or do not.
     Functions { functions: Vec<NodeId> },
-    /// What evaluation says nothing of: poles, numbers of solutions.
+    /// The order of a pole of an expression where another one vanishes.
+    Pole { expression: NodeId, factor: NodeId, order: i64 },
+    /// What is looked at nowhere: numbers of solutions.
     Other,
 }
 
@@ -232,6 +234,10 @@ fn subject(system: &mut System, statement: &Statement, guards: &mut Vec<Guard>) 
             Subject::System { claimed: whole(system, n)? }
         }
         (Value::Visible { functions, .. }, _) => Subject::Functions { functions },
+        (Value::Pole { expression, factor }, Value::Scalar(n))
+        | (Value::Scalar(n), Value::Pole { expression, factor }) => {
+            Subject::Pole { expression, factor, order: integer(system, n).ok_or(UNREAD)? }
+        }
         (Value::Pole { .. } | Value::Solutions(_), _) | (_, Value::Pole { .. } | Value::Solutions(_)) => {
             Subject::Other
         }
@@ -239,9 +245,13 @@ fn subject(system: &mut System, statement: &Statement, guards: &mut Vec<Guard>) 
     })
 }
 
-fn whole(system: &System, node: NodeId) -> Result<usize, Doubt> {
+fn integer(system: &System, node: NodeId) -> Option<i64> {
     let value = system.graph.constant_value(node).filter(|value| value.denominator().is_one());
-    value.and_then(|value| usize::try_from(value.numerator().clone()).ok()).ok_or(UNREAD)
+    value.and_then(|value| i64::try_from(value.numerator().clone()).ok())
+}
+
+fn whole(system: &System, node: NodeId) -> Result<usize, Doubt> {
+    integer(system, node).and_then(|value| usize::try_from(value).ok()).ok_or(UNREAD)
 }
 
 /// The rows that some names stand for: differentials of outputs, of their Lie derivatives `Lg Lf^3 y`, and of functions.

@@ -223,7 +223,7 @@ impl Doubt {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // messages say it
 pub enum Ground {
-    #[error("the difference of both sides is zero once it is multiplied out")]
+    #[error("it follows from the expressions themselves, multiplied out")]
     MultipliedOut,
     #[error("the rank follows by elimination among the expressions themselves")]
     Eliminated,

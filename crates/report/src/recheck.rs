@@ -76,7 +76,7 @@ fn verdict_json(verdict: &CheckedVerdict<'_>) -> Value {
 
 fn reason(verdict: &CheckedVerdict<'_>) -> String {
     match &verdict.record.evidence {
-        Evidence::Unchecked(why) => why.clone(),
+        Evidence::Unchecked(why) if !matches!(verdict.finding, Finding::Shown(_)) => why.clone(),
         Evidence::Boxes(boxes) if matches!(verdict.finding, Finding::Confirmed { .. }) => boxes.in_words(),
         _ => finding_text(&verdict.finding),
     }

@@ -97,7 +97,9 @@ impl Normal<'_> {
         let mut open = rows(asked.outputs)?;
         while echelon.rows.len() < width && !open.is_empty() {
             // short forms first
-            open.sort_by_cached_key(|row| std::cmp::Reverse(row.iter().map(|entry| self.size(entry)).sum::<usize>()));
+            open.sort_by_cached_key(|row| {
+                std::cmp::Reverse(row.iter().map(|entry| self.size(entry)).sum::<usize>())
+            });
             let Some(row) = open.pop() else { break };
             let left = self.reduced(&echelon, row)?;
             if left.iter().all(Quotient::is_zero) {
@@ -171,7 +173,11 @@ impl Normal<'_> {
         self.field.times(above, &below)
     }
 
-    fn polynomial_along(&mut self, polynomial: &Polynomial, rates: &Rates) -> Result<Option<Quotient>, Missing> {
+    fn polynomial_along(
+        &mut self,
+        polynomial: &Polynomial,
+        rates: &Rates,
+    ) -> Result<Option<Quotient>, Missing> {
         let mut terms = Vec::new();
         for variable in polynomial.variables() {
             let Some(rate) = self.variable_along(variable, rates)? else { return Ok(None) };

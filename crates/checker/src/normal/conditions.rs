@@ -39,7 +39,9 @@ impl<'l> Equations<'l> {
 /// # Errors
 /// Where it takes too much work, or an operation has no value.
 pub fn follow(equations: Equations<'_>, effort: &Effort) -> Result<bool, Missing> {
-    if equations.sides.is_empty() || equations.sides.iter().any(|sides| sides.relation != SidesRelation::Equal) {
+    if equations.sides.is_empty()
+        || equations.sides.iter().any(|sides| sides.relation != SidesRelation::Equal)
+    {
         return Ok(false);
     }
     with_divisors(effort, |normal| {
@@ -49,7 +51,7 @@ pub fn follow(equations: Equations<'_>, effort: &Effort) -> Result<bool, Missing
 }
 
 /// How a factor that is zero can be solved.
-enum Solution {
+pub(super) enum Solution {
     Symbol(String, Quotient),
     Angle(Term, [i32; 2]),
 }
@@ -175,11 +177,17 @@ impl Normal<'_> {
     }
 
     /// A quotient with another one in the place of a variable; nothing where something else holds the variable.
-    fn replaced(&mut self, quotient: &Quotient, variable: u32, by: &Quotient) -> Result<Option<Quotient>, Stop> {
+    pub(super) fn replaced(
+        &mut self,
+        quotient: &Quotient,
+        variable: u32,
+        by: &Quotient,
+    ) -> Result<Option<Quotient>, Stop> {
         let mut product = Quotient::from(quotient.number.clone());
         for (factor, power) in &quotient.powers {
             let polynomial = self.field.factor(*factor).clone();
-            if polynomial.variables().iter().any(|inner| *inner != variable && self.depends(*inner, variable)) {
+            if polynomial.variables().iter().any(|inner| *inner != variable && self.depends(*inner, variable))
+            {
                 return Ok(None);
             }
             let mut terms = Vec::new();
@@ -291,7 +299,11 @@ impl Normal<'_> {
     }
 
     /// All ways in which a factor is zero, where they can be told: a symbol by the others, or quarter turns.
-    fn solutions(&mut self, factor: u32, not_zero: &BTreeSet<u32>) -> Result<Option<Vec<Solution>>, Stop> {
+    pub(super) fn solutions(
+        &mut self,
+        factor: u32,
+        not_zero: &BTreeSet<u32>,
+    ) -> Result<Option<Vec<Solution>>, Stop> {
         let polynomial = self.field.factor(factor).clone();
         if let [(monomial, _)] = polynomial.terms()
             && let [(variable, 1)] = *monomial.powers()

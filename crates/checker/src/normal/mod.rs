@@ -5,6 +5,7 @@
 
 mod closure;
 mod conditions;
+mod pole;
 mod polynomial;
 mod quotient;
 mod span;
@@ -15,19 +16,22 @@ mod tests;
 
 use super::doubt::{Effort, Missing};
 use super::listing::{Listing, Step};
+pub use closure::{Closed, Moving, closed};
+pub use conditions::{Equations, follow};
 use dashu::base::Signed;
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
 use palmistry_math::number::{Function, Refusal};
+pub use pole::has_pole;
 use polynomial::{Monomial, Polynomial, square_part};
-pub use conditions::{Equations, follow};
-pub use closure::{Closed, Moving, closed};
+use quotient::{Field, Quotient};
 pub use span::{Row, Spans, span};
 pub use states::states_on_parts;
+use std::collections::{BTreeMap, HashMap, HashSet};
 pub use symmetry::{Kept, kept};
-use quotient::{Field, Quotient};
-use std::collections::{BTreeMap, HashMap};
 
+/// Functions of functions nest no deeper.
+const DEEPEST: usize = 16;
 /// Multiples of an angle are no greater, nor are its parts smaller.
 const LARGEST_MULTIPLE: i64 = 64;
 
@@ -48,11 +52,29 @@ enum Atom {
     Value(Function, Polynomial, Polynomial),
 }
 
+impl Atom {
+    /// The variables that take part in it.
+    fn variables(&self) -> Vec<u32> {
+        let of_term = |term: &Term| {
+            let own = term.0.powers().iter().map(|(variable, _)| *variable);
+            own.chain(term.1.variables()).collect()
+        };
+        match self {
+            Atom::Symbol(_) | Atom::Pi | Atom::Turns(_) => Vec::new(),
+            Atom::Sine(term) | Atom::Cosine(term) | Atom::Exponential(term) => of_term(term),
+            Atom::Root(a, b) | Atom::Value(_, a, b) => [a.variables(), b.variables()].concat(),
+        }
+    }
+}
+
 /// One monomial of an argument, over what the argument is divided by.
 type Term = (Monomial, Polynomial);
 
 /// By how much terms of arguments are divided, so that all their multiples are whole.
 type Divisors = HashMap<Term, i64>;
+
+/// Cosine and sine.
+type Turned = (Quotient, Quotient);
 
 /// Why a listing has no normal form.
 enum Stop {
@@ -71,6 +93,8 @@ impl From<Missing> for Stop {
 pub struct Normal<'e> {
     pub field: Field<'e>,
     atoms: Vec<Atom>,
+    /// How deep functions of functions nest in each.
+    depths: Vec<usize>,
     known: HashMap<Atom, u32>,
     divisors: Divisors,
     part: Part,
@@ -95,6 +119,7 @@ fn with_divisors<'e, T>(
         let mut normal = Normal {
             field: Field::new(effort),
             atoms: Vec::new(),
+            depths: Vec::new(),
             known: HashMap::new(),
             divisors,
             part: Part::default(),
@@ -129,12 +154,20 @@ impl Normal<'_> {
         }
         for (place, step) in steps.iter().enumerate().filter(|(place, _)| is_needed[*place]) {
             let value = self.form(place, step, values)?;
+            if self.depths.last().is_some_and(|depth| *depth > DEEPEST) {
+                return Err(Missing::Effort.into());
+            }
             values.insert(place, value);
         }
         Ok(())
     }
 
-    fn form(&mut self, place: usize, step: &Step, values: &BTreeMap<usize, Quotient>) -> Result<Quotient, Stop> {
+    fn form(
+        &mut self,
+        place: usize,
+        step: &Step,
+        values: &BTreeMap<usize, Quotient>,
+    ) -> Result<Quotient, Stop> {
         let at = |operand: &usize| values.get(operand).ok_or(Missing::Place { place });
         let by_zero = Missing::Refused { place, refusal: Refusal::DivisionByZero };
         Ok(match step {
@@ -170,6 +203,8 @@ impl Normal<'_> {
                 if let Atom::Root(inner, _) = &atom {
                     self.field.is_root(variable, inner.clone());
                 }
+                let inner = atom.variables().into_iter().map(|variable| self.depths[variable as usize]);
+                self.depths.push(1 + inner.max().unwrap_or(0));
                 self.atoms.push(atom.clone());
                 self.known.insert(atom, variable);
                 variable
@@ -190,20 +225,16 @@ impl Normal<'_> {
 
     /// Whether a variable stands for something in which another one takes part, or is that one.
     fn depends(&self, variable: u32, on: u32) -> bool {
-        if variable == on {
-            return true;
-        }
-        let of = |polynomial: &Polynomial| {
-            let mut powers = polynomial.terms().iter().flat_map(|(monomial, _)| monomial.powers());
-            powers.any(|(inner, _)| self.depends(*inner, on))
-        };
-        match self.atom_of(variable) {
-            None | Some(Atom::Symbol(_) | Atom::Pi | Atom::Turns(_)) => false,
-            Some(Atom::Sine(term) | Atom::Cosine(term) | Atom::Exponential(term)) => {
-                term.0.powers().iter().any(|(inner, _)| self.depends(*inner, on)) || of(&term.1)
+        let (mut open, mut seen) = (vec![variable], HashSet::new());
+        while let Some(next) = open.pop() {
+            if next == on {
+                return true;
             }
-            Some(Atom::Root(a, b) | Atom::Value(_, a, b)) => of(a) || of(b),
+            if seen.insert(next) {
+                open.extend(self.atom_of(next).map(Atom::variables).unwrap_or_default());
+            }
         }
+        false
     }
 
     /// A function of which nothing is known but that equal arguments have equal values.
@@ -248,7 +279,7 @@ impl Normal<'_> {
     }
 
     /// Cosine and sine.
-    fn circular(&mut self, argument: &Quotient) -> Result<(Quotient, Quotient), Stop> {
+    fn circular(&mut self, argument: &Quotient) -> Result<Turned, Stop> {
         let one = Quotient::from(RBig::ONE);
         let mut whole = (one, Quotient::from(RBig::ZERO));
         for (term, value) in self.terms(argument)? {
@@ -266,7 +297,10 @@ impl Normal<'_> {
                     let square = self.field.expanded(&self.field.times(&cosine, &cosine)?.powers, 1)?;
                     let mut rest = polynomial::Sum::default();
                     rest.add(Monomial::default(), IBig::ONE);
-                    square.terms().iter().for_each(|(monomial, value)| rest.add(monomial.clone(), -value.clone()));
+                    square
+                        .terms()
+                        .iter()
+                        .for_each(|(monomial, value)| rest.add(monomial.clone(), -value.clone()));
                     let sine = self.atom(Atom::Sine(term), Some(rest.finish()));
                     ((cosine, sine), multiple)
                 }
@@ -280,14 +314,14 @@ impl Normal<'_> {
     }
 
     /// Cosine and sine of the sum of two angles.
-    fn turned(
-        &mut self,
-        a: &(Quotient, Quotient),
-        b: &(Quotient, Quotient),
-    ) -> Result<(Quotient, Quotient), Missing> {
+    fn turned(&mut self, a: &Turned, b: &Turned) -> Result<Turned, Missing> {
         let field = &mut self.field;
-        let products =
-            [field.times(&a.0, &b.0)?, field.times(&a.1, &b.1)?, field.times(&a.0, &b.1)?, field.times(&a.1, &b.0)?];
+        let products = [
+            field.times(&a.0, &b.0)?,
+            field.times(&a.1, &b.1)?,
+            field.times(&a.0, &b.1)?,
+            field.times(&a.1, &b.0)?,
+        ];
         let [cc, ss, cs, sc] = products;
         Ok((field.sum(&[cc, ss.neg()])?, field.sum(&[cs, sc])?))
     }
@@ -297,7 +331,7 @@ impl Normal<'_> {
         &mut self,
         (monomial, below): &Term,
         value: &RBig,
-    ) -> Result<Option<((Quotient, Quotient), i64)>, Missing> {
+    ) -> Result<Option<(Turned, i64)>, Missing> {
         let is_one = below.number().is_some_and(|number| number.is_one());
         if let [(a, 1), (b, 1)] = *monomial.powers() {
             let is_turned = [a, b].iter().any(|of| matches!(self.atom_of(*of), Some(Atom::Turns(_))))
@@ -361,7 +395,9 @@ impl Normal<'_> {
             let of_logarithm = match *term.0.powers() {
                 [(variable, 1)] if term.1.number().is_some_and(|number| number.is_one()) => {
                     match self.atom_of(variable) {
-                        Some(Atom::Value(Function::Log, above, below)) => Some((above.clone(), below.clone())),
+                        Some(Atom::Value(Function::Log, above, below)) => {
+                            Some((above.clone(), below.clone()))
+                        }
                         _ => None,
                     }
                 }
@@ -397,7 +433,7 @@ impl Normal<'_> {
         let (content, common, rest) = product.content();
         let scale = &of.number * RBig::from(content);
         let size = if scale.is_negative() { -scale.clone() } else { scale.clone() };
-        let (number, denominator) = (IBig::from(size.numerator().clone()), IBig::from(size.denominator().clone()));
+        let (number, denominator) = (size.numerator().clone(), IBig::from(size.denominator().clone()));
         let number = UBig::try_from(number * &denominator).map_err(|_| Missing::Effort)?;
         let (root, primes) = square_part(&number);
         let under = Quotient { number: RBig::from(denominator), powers: below_the_bar(of) };

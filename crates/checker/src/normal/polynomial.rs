@@ -152,7 +152,8 @@ impl Polynomial {
     pub fn remainder(&self, divisors: &[Polynomial], effort: &Effort) -> Result<Polynomial, Missing> {
         let mut rest: BTreeMap<Graded, IBig> = self.0.iter().cloned().map(|(m, c)| (Graded(m), c)).collect();
         let mut left = Sum::default();
-        let ends: Vec<_> = divisors.iter().filter_map(|by| Some((by, by.0.iter().max_by(by_degree)?))).collect();
+        let ends: Vec<_> =
+            divisors.iter().filter_map(|by| Some((by, by.0.iter().max_by(by_degree)?))).collect();
         while let Some((Graded(monomial), value)) = rest.pop_last() {
             let found = ends.iter().find_map(|(by, end)| Some((by, end, monomial.over(&end.0)?)));
             let Some((by, end, factor)) = found else {
@@ -182,7 +183,8 @@ impl Polynomial {
     /// # Errors
     /// Where it takes too much work.
     pub fn over(&self, divisor: &Polynomial, effort: &Effort) -> Result<Option<Polynomial>, Missing> {
-        let (Some(last), Some(first)) = (divisor.0.iter().max_by(by_degree), divisor.0.iter().min_by(by_degree))
+        let (Some(last), Some(first)) =
+            (divisor.0.iter().max_by(by_degree), divisor.0.iter().min_by(by_degree))
         else {
             return Ok(None);
         };
@@ -288,7 +290,13 @@ impl Relations {
     }
 
     /// Adds a term, with squares put in.
-    fn collect(&self, sum: &mut Sum, monomial: Monomial, value: IBig, effort: &Effort) -> Result<(), Missing> {
+    fn collect(
+        &self,
+        sum: &mut Sum,
+        monomial: Monomial,
+        value: IBig,
+        effort: &Effort,
+    ) -> Result<(), Missing> {
         let bits = value.bit_len();
         if bits > LONGEST_COEFFICIENT {
             return Err(Missing::Effort);
@@ -302,7 +310,10 @@ impl Relations {
                 return Err(Missing::Effort);
             }
             let square = monomial.0.iter().find_map(|(variable, exponent)| {
-                self.0[*variable as usize].as_ref().filter(|_| *exponent > 1).map(|square| (*variable, square))
+                self.0[*variable as usize]
+                    .as_ref()
+                    .filter(|_| *exponent > 1)
+                    .map(|square| (*variable, square))
             });
             let Some((variable, square)) = square else {
                 sum.add(monomial, value);

@@ -197,12 +197,12 @@ impl<'e> Field<'e> {
         for term in &terms {
             let below = IBig::from(term.number.denominator().clone());
             let shared = IBig::from(denominator.clone().gcd(&below));
-            denominator = denominator * (below / shared);
+            denominator *= below / shared;
         }
         let mut sum = Sum::default();
         for term in terms {
             let part = self.without(term, &common)?;
-            let scale = IBig::from(term.number.numerator().clone())
+            let scale = term.number.numerator().clone()
                 * (&denominator / IBig::from(term.number.denominator().clone()));
             self.effort.spend(2 * part.terms().len() as u64)?;
             for (monomial, value) in part.terms() {
@@ -213,7 +213,7 @@ impl<'e> Field<'e> {
         if found.is_zero() {
             return Ok(found);
         }
-        found.number = found.number / RBig::from(denominator);
+        found.number /= RBig::from(denominator);
         let common = common.into_iter().filter(|(_, power)| *power != 0).collect();
         self.cancelled(self.times(&found, &Quotient { number: RBig::ONE, powers: common })?)
     }
@@ -242,7 +242,10 @@ impl<'e> Field<'e> {
     }
 
     /// Factors below the bar that divide a factor above it are taken out of both.
-    fn cancelled(&mut self, mut quotient: Quotient) -> Result<Quotient, Missing> {
+    ///
+    /// # Errors
+    /// Where it takes too much work.
+    pub fn cancelled(&mut self, mut quotient: Quotient) -> Result<Quotient, Missing> {
         let of_sign = |quotient: &Quotient, sign: i32| -> Vec<u32> {
             quotient.powers.iter().filter(|(_, power)| power.signum() == sign).map(|(f, _)| *f).collect()
         };

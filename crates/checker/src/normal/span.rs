@@ -83,7 +83,11 @@ impl Normal<'_> {
     }
 
     /// What is left of a row when multiples of those in echelon form are taken off.
-    pub(super) fn reduced(&mut self, echelon: &Echelon, row: Vec<Quotient>) -> Result<Vec<Quotient>, Missing> {
+    pub(super) fn reduced(
+        &mut self,
+        echelon: &Echelon,
+        row: Vec<Quotient>,
+    ) -> Result<Vec<Quotient>, Missing> {
         let mut left = Vec::with_capacity(row.len());
         for column in 0..row.len() {
             if echelon.rows.iter().any(|(pivot, _)| *pivot == column) {
@@ -136,9 +140,8 @@ impl Normal<'_> {
             let mut terms = self.part.angles.iter().map(|(term, _)| term);
             terms.any(|term| term.0.powers().iter().any(|(inner, _)| self.depends(*inner, variable)))
         };
-        let is_symbol = |variable: u32| {
-            matches!(self.atom_of(variable), Some(Atom::Symbol(_))) && !is_held(variable)
-        };
+        let is_symbol =
+            |variable: u32| matches!(self.atom_of(variable), Some(Atom::Symbol(_))) && !is_held(variable);
         let is_free = |variable: u32| match self.atom_of(variable) {
             Some(Atom::Symbol(_)) => is_symbol(variable),
             Some(Atom::Sine(term) | Atom::Cosine(term) | Atom::Exponential(term)) => {
@@ -148,8 +151,8 @@ impl Normal<'_> {
             _ => false,
         };
         let factors = quotient.powers.keys().map(|factor| self.field.factor(*factor));
-        factors.flat_map(|factor| factor.terms()).all(|(monomial, _)| {
-            monomial.powers().iter().all(|(variable, _)| is_free(*variable))
-        })
+        factors
+            .flat_map(|factor| factor.terms())
+            .all(|(monomial, _)| monomial.powers().iter().all(|(variable, _)| is_free(*variable)))
     }
 }

@@ -13,7 +13,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 /// So many states are drawn on each part.
-const DRAWN: usize = 4;
+const DRAWN: usize = 2;
 
 /// Some states on each part of the set, at which the rank of rows is to be looked at, with the kinds of coordinates that another state has, numbers or angles; nothing where conditions cannot be solved. A part is an open piece of a space in which what is free can have any value, so that a determinant that is not
 /// zero at one of its states is zero at almost none.
@@ -129,9 +129,9 @@ impl Normal<'_> {
             for (monomial, value) in self.field.factor(*factor).terms() {
                 let mut term = RBig::from(value.clone());
                 for (variable, exponent) in monomial.powers() {
-                    term = term * self.variable_at(*variable, state)?.pow(*exponent as isize);
+                    term *= self.variable_at(*variable, state)?.pow(*exponent as isize);
                 }
-                sum = sum + term;
+                sum += term;
             }
             if sum.is_zero() && *power < 0 {
                 return None;
@@ -145,8 +145,8 @@ impl Normal<'_> {
     fn variable_at(&self, variable: u32, state: &ExactState) -> Option<RBig> {
         let circular = |term: &Term| {
             let [(angle, 1)] = *term.0.powers() else { return None };
-            let is_whole = term.1.number().is_some_and(|number| number.is_one())
-                && !self.divisors.contains_key(term);
+            let is_whole =
+                term.1.number().is_some_and(|number| number.is_one()) && !self.divisors.contains_key(term);
             match (self.atom_of(angle)?, is_whole) {
                 (Atom::Symbol(name), true) => match state.get(name)? {
                     ExactCoordinate::Angle { sin, cos } => Some((sin.0.clone(), cos.0.clone())),

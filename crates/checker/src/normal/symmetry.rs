@@ -238,12 +238,12 @@ fn solved(equations: Vec<Equation>, count: usize, effort: &Effort) -> Result<Vec
     let mut solved: BTreeMap<usize, Equation> = BTreeMap::new();
     for mut equation in equations {
         equation.retain(|_, value| !value.is_zero());
-        loop {
-            let Some(pivot) = equation.keys().copied().find(|place| solved.contains_key(place)) else { break };
+        while let Some(pivot) = equation.keys().copied().find(|place| solved.contains_key(place)) {
             let Some(by) = equation.get(&pivot).cloned() else { break };
             subtract(&mut equation, &solved[&pivot], &by, effort)?;
         }
-        let Some((pivot, value)) = equation.iter().next().map(|(place, value)| (*place, value.clone())) else {
+        let Some((pivot, value)) = equation.iter().next().map(|(place, value)| (*place, value.clone()))
+        else {
             continue;
         };
         equation.values_mut().for_each(|entry| *entry = &*entry / &value);

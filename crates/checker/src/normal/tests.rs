@@ -8,7 +8,7 @@ use super::super::evaluation::Evaluation;
 use super::super::listing::Listing;
 use super::super::sources::ProofSources;
 use super::super::state::{ExactCoordinate, ExactState, Ratio};
-use super::{Equations, follow};
+use super::{Equations, follow, has_pole};
 use dashu::rational::RBig;
 use palmistry_lang::System;
 use rand::{Rng, RngExt, SeedableRng};
@@ -20,7 +20,8 @@ const STATES: &str = "system \"by hand\"\nstate x, y, z, phi, psi\nangle phi, ps
 
 fn claimed(head: &str, claim: &str) -> (System, BuiltClaim) {
     let text = format!("{head}claim it: {claim}\n");
-    let mut system = System::parse("by hand", &text, Path::new(".")).unwrap_or_else(|why| panic!("{text}{why}"));
+    let mut system =
+        System::parse("by hand", &text, Path::new(".")).unwrap_or_else(|why| panic!("{text}{why}"));
     let said = statement(&system, "it").expect("the claim is there").clone();
     let claim = BuiltClaim::of(&mut system, &said).unwrap_or_else(|why| panic!("{text}{why}"));
     (system, claim)
@@ -115,7 +116,8 @@ fn what_fails_somewhere_is_not_shown() {
 /// A random expression in the language.
 fn expression(rng: &mut impl Rng, depth: usize) -> String {
     if depth == 0 {
-        let leaves = ["x", "y", "z", "2", "3/2", "sin(phi)", "cos(phi)", "cos(phi + psi)", "sin(psi/2)", "sin(2*phi)"];
+        let leaves =
+            ["x", "y", "z", "2", "3/2", "sin(phi)", "cos(phi)", "cos(phi + psi)", "sin(psi/2)", "sin(2*phi)"];
         return leaves[rng.random_range(0..leaves.len())].to_owned();
     }
     let mut part = || expression(rng, depth - 1);
@@ -217,5 +219,35 @@ fn generic_ranks_are_shown_and_wrong_ones_are_not() {
         (plain, "unobservable(k) where x = 0", false),
     ] {
         assert_eq!(is_shown_generic(head, claim), holds, "{claim}");
+    }
+}
+
+#[test]
+fn orders_of_poles_are_shown_where_no_other_factor_vanishes_too() {
+    for (claim, holds) in [
+        ("pole(1/x, x) = 1", true),
+        ("pole(1/x, x) = 2", false),
+        ("pole(x^2, x) = -2", true),
+        ("pole(x/(x*y), x) = 0", true),
+        ("pole((x^2 - y^2)/(x - y)^3, x - y) = 2", true),
+        ("pole(1/sin(phi)^2, sin(phi)) = 2", true),
+        // at one of two half turns the numerator vanishes as well
+        ("pole((1 - cos(phi))/sin(phi)^2, sin(phi)) = 2", false),
+        ("pole(sin(2*phi)/sin(phi)^3, sin(phi)) = 2", true),
+        ("pole(phi/sin(phi), sin(phi)) = 1", false),
+        ("pole(1/(x^2 - 2*y), x) = 0 where y = 0", false),
+        ("pole(1/(x^2 - 2*y), x) = 2 where y = 0", true),
+        ("pole(1/(x*y), x*y) = 1", false),
+    ] {
+        let (system, built) = claimed(STATES, claim);
+        let Subject::Pole { expression, factor, order } = built.subject else { panic!("{claim}: no pole") };
+        let (listed, places) = built
+            .listed(&system, &Listing::default(), |lowering| {
+                Ok((lowering.place(expression)?, lowering.place(factor)?))
+            })
+            .unwrap();
+        let states = Equations::without_sides(&listed);
+        let shown = has_pole(states, places, order, &Effort::new(1 << 22)).unwrap_or(false);
+        assert_eq!(shown, holds, "{claim}");
     }
 }
