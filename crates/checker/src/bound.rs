@@ -6,7 +6,7 @@ use super::bound_span::{Asked, is_shown, pole_is_shown};
 use super::checking::{Checking, operations};
 use super::claim::{BuiltClaim, Subject, sides, statement};
 use super::claimed_rank::ClaimedWord;
-use super::doubt::{Doubt, Effort, Finding, Ground, Unchecked};
+use super::doubt::{Doubt, Effort, Finding, ShownBy, Unchecked};
 use super::identity::StatedIdentity;
 use super::listing::Listing;
 use super::normal::{Equations, follow};
@@ -101,7 +101,7 @@ fn of_a_claim(record: &VerdictRecord, system: &mut System, with: Checking<'_>) -
             let is_asked = record.verdict == RecordedWord::Proved;
             let asked = ((*expression, *factor), *order);
             Ok(match is_asked && pole_is_shown(system, &claim, asked, with)? {
-                true => Finding::Shown(Ground::MultipliedOut),
+                true => Finding::Shown(ShownBy::MultipliedOut),
                 false => Finding::NotChecked(Unchecked::Nothing),
             })
         }
@@ -132,7 +132,7 @@ fn without_states(
         Asked { rank, given: None, is_generic: false, is_seen: record.asked.what == ClaimKind::Observable };
     let is_asked = record.asked.sense == ClaimSense::Generic && record.verdict == RecordedWord::Proved;
     if is_asked && is_shown(system, claim, asked, with)? {
-        return Ok(Finding::Shown(Ground::Eliminated));
+        return Ok(Finding::Shown(ShownBy::Eliminated));
     }
     Ok(Finding::NotChecked(match record.evidence {
         Evidence::Unchecked(_) => Unchecked::Nothing,
@@ -200,7 +200,7 @@ fn proved(
         requirements: &own.requirements,
     };
     Ok(match follow(equations, &with.effort.limited(WORK)) {
-        Ok(true) => Finding::Shown(Ground::MultipliedOut),
+        Ok(true) => Finding::Shown(ShownBy::MultipliedOut),
         // what takes too much work was not shown
         _ => finding,
     })

@@ -5,7 +5,7 @@ use super::bound_span::{Asked, is_shown};
 use super::checking::{Checking, operations};
 use super::claim::{BuiltClaim, ListedClaim, OWN_ROWS, Subject, further_rows, numbered_row, rows_of_words};
 use super::claimed_rank::Tried;
-use super::doubt::{Doubt, Effort, Finding, Ground, Half, Missing, Unchecked};
+use super::doubt::{Doubt, Effort, Finding, Half, Missing, ShownBy, Unchecked};
 use super::listing::{Listing, Step};
 use super::minor::CertifiedRank;
 use super::normal::{Equations, states_on_parts};
@@ -75,11 +75,11 @@ pub(super) fn of_a_claim(
     }
     let is_full = rank.is_some_and(|rank| rank == rows.columns.len());
     if is_full && is_rational(&rows) && is_full_on_each_part(system, &rows, with)? {
-        return Ok(Finding::Shown(Ground::EachPart));
+        return Ok(Finding::Shown(ShownBy::EachPart));
     }
     let asked = Asked { rank, given: Some(given), is_generic, is_seen };
     if is_shown(system, claim, asked, with)? {
-        return Ok(Finding::Shown(Ground::Eliminated));
+        return Ok(Finding::Shown(ShownBy::Eliminated));
     }
     Ok(finding)
 }

@@ -6,7 +6,9 @@ use super::doubt::{Doubt, Effort, Missing};
 use super::listing::Listing;
 use super::lowering::Lowering;
 use super::minor::CertifiedRank;
-use super::normal::{Closed, Equations, Kept, Moving, Row, Spans, closed, follow, has_pole, kept, span};
+use super::normal::{
+    Closed, Equations, KeptFields, MovingField, RowPlaces, Spans, closed, follow, has_pole, kept, span,
+};
 use palmistry_lang::{System, Time};
 use palmistry_math::expression::syntax::Relation;
 use palmistry_math::expression::{NodeId, Symbol, gradient};
@@ -85,7 +87,7 @@ fn words_of_the_minor(given: &CertifiedRank) -> Option<Vec<String>> {
     minor.rows.iter().map(|row| given.words.get(*row).cloned()).collect()
 }
 
-fn placed(lowering: &mut Lowering<'_>, rows: &[Vec<NodeId>]) -> Result<Vec<Row>, Missing> {
+fn placed(lowering: &mut Lowering<'_>, rows: &[Vec<NodeId>]) -> Result<Vec<RowPlaces>, Missing> {
     rows.iter().map(|row| row.iter().map(|entry| lowering.place(*entry)).collect()).collect()
 }
 
@@ -161,7 +163,7 @@ fn has_forms(
             let mut moving = Vec::new();
             for (rates, slopes, known_slopes) in &fields {
                 let place = |(name, rate): &(String, NodeId)| Ok((name.clone(), lowering.place(*rate)?));
-                moving.push(Moving {
+                moving.push(MovingField {
                     rates: rates.iter().map(place).collect::<Result<_, Missing>>()?,
                     slopes: placed(lowering, slopes)?,
                     known_slopes: placed(lowering, known_slopes)?,
@@ -169,7 +171,7 @@ fn has_forms(
             }
             Ok((outputs, functions, differences, moving))
         })?;
-    let (inside, outside): (&[Row], &[Row]) =
+    let (inside, outside): (&[RowPlaces], &[RowPlaces]) =
         if asked.is_seen { (&functions, &[]) } else { (&[], &functions) };
     let (states, outputs, fields) = (Equations::without_sides(&listed), &outputs[..], &fields[..]);
     // what is no less by the minor is no more by as many fields
@@ -179,7 +181,8 @@ fn has_forms(
     if agrees && (dimension.is_some() || !needs_dimension) {
         let dimension = dimension.filter(|_| needs_dimension);
         let constant = &[outputs, &differences].concat();
-        let by_fields = Kept { states, columns: &columns, constant, fields, dimension, inside, outside };
+        let by_fields =
+            KeptFields { states, columns: &columns, constant, fields, dimension, inside, outside };
         if kept(by_fields, &effort.limited(WORK / 4)).is_ok_and(|shown| shown) {
             return Ok(true);
         }

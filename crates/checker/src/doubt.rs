@@ -222,7 +222,7 @@ impl Doubt {
 /// By what a verdict was shown without states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // messages say it
-pub enum Ground {
+pub enum ShownBy {
     #[error("it follows from the expressions themselves, multiplied out")]
     MultipliedOut,
     #[error("the rank follows by elimination among the expressions themselves")]
@@ -273,7 +273,7 @@ pub enum Finding {
     /// boxes.
     Confirmed { times: usize },
     /// The same by exact arithmetic with expressions in the place of states.
-    Shown(Ground),
+    Shown(ShownBy),
     /// One half of it was.
     HalfConfirmed(Half),
     /// What was evaluated agrees with the verdict and does not prove it: so many states beyond the one in the file.

@@ -44,7 +44,7 @@ pub use checking::Checking;
 pub use claimed_rank::{ClaimedRank, ClaimedWord};
 #[doc(hidden)]
 pub use doubt::Missing;
-pub use doubt::{Doubt, Effort, Finding, Ground, Half, Unchecked};
+pub use doubt::{Doubt, Effort, Finding, Half, ShownBy, Unchecked};
 #[doc(hidden)]
 pub use file::LARGEST_FILE;
 pub use file::{CheckedVerdict, Unreadable, VerdictFile};

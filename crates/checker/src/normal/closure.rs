@@ -5,8 +5,8 @@
 
 use super::super::doubt::{Effort, Missing};
 use super::conditions::Equations;
-use super::polynomial::{Monomial, Polynomial, Sum};
-use super::span::{Echelon, Row, are_open, entries};
+use super::polynomial::{IntegerPolynomial, Monomial, Sum};
+use super::span::{Echelon, RowPlaces, are_open, entries};
 use super::{Atom, Normal, Quotient, Stop, Term, with_divisors};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
@@ -15,13 +15,13 @@ use std::collections::BTreeMap;
 
 /// One field, by the places of its components and of their differentials.
 #[derive(Clone, Debug)]
-pub struct Moving {
+pub struct MovingField {
     /// The symbols that it moves, and how.
     pub rates: Vec<(String, usize)>,
     /// The differential of the rate of each column, in the order of the columns.
-    pub slopes: Vec<Row>,
+    pub slopes: Vec<RowPlaces>,
     /// Those of the rates of symbols that are known.
-    pub known_slopes: Vec<Row>,
+    pub known_slopes: Vec<RowPlaces>,
 }
 
 /// What is asked of a system at almost all states at which conditions hold, no field leaving them.
@@ -30,15 +30,15 @@ pub struct Closed<'l> {
     /// The listing, the conditions and the requirements; no sides.
     pub states: Equations<'l>,
     /// The differentials of the outputs.
-    pub outputs: &'l [Row],
+    pub outputs: &'l [RowPlaces],
     /// The fields.
-    pub fields: &'l [Moving],
+    pub fields: &'l [MovingField],
     /// The rank, where it is asked.
     pub rank: Option<usize>,
     /// Differentials that lie in the codistribution.
-    pub inside: &'l [Row],
+    pub inside: &'l [RowPlaces],
     /// Differentials each of which does not.
-    pub outside: &'l [Row],
+    pub outside: &'l [RowPlaces],
 }
 
 /// Whether all that is asked holds at almost all states of each part of the set. `false` says nothing.
@@ -51,7 +51,8 @@ pub fn closed(asked: Closed<'_>, effort: &Effort) -> Result<bool, Missing> {
     }
     with_divisors(effort, |normal| {
         let mut solved = Vec::new();
-        if !normal.solve(asked.states, &mut solved)? {
+        // of no state nothing is generic
+        if !normal.solve(asked.states, &mut solved)? || solved.is_empty() {
             return Ok(false);
         }
         for part in solved {
@@ -79,7 +80,7 @@ impl Normal<'_> {
         }
         let mut values = BTreeMap::new();
         self.forms(asked.states.listing, &wanted, &mut values)?;
-        let rows = |rows: &[Row]| -> Result<Rows, Missing> {
+        let rows = |rows: &[RowPlaces]| -> Result<Rows, Missing> {
             rows.iter().map(|row| entries(row, &values)).collect()
         };
         let mut fields: Vec<(Rates, Rows)> = Vec::new();
@@ -167,7 +168,7 @@ impl Normal<'_> {
         Ok(Some(self.field.sum(&terms)?))
     }
 
-    fn over(&mut self, above: &Quotient, below: &Polynomial) -> Result<Quotient, Missing> {
+    fn over(&mut self, above: &Quotient, below: &IntegerPolynomial) -> Result<Quotient, Missing> {
         let below = self.field.quotient(below.clone());
         let below = self.field.power(&below, -1)?.ok_or(Missing::Effort)?;
         self.field.times(above, &below)
@@ -175,7 +176,7 @@ impl Normal<'_> {
 
     fn polynomial_along(
         &mut self,
-        polynomial: &Polynomial,
+        polynomial: &IntegerPolynomial,
         rates: &Rates,
     ) -> Result<Option<Quotient>, Missing> {
         let mut terms = Vec::new();
@@ -192,7 +193,7 @@ impl Normal<'_> {
 
     fn variable_along(&mut self, variable: u32, rates: &Rates) -> Result<Option<Quotient>, Missing> {
         let zero = Quotient::from(RBig::ZERO);
-        let own = self.field.quotient(Polynomial::variable(variable));
+        let own = self.field.quotient(IntegerPolynomial::variable(variable));
         let Some(atom) = self.atom_of(variable).cloned() else { return Ok(None) };
         Ok(match atom {
             Atom::Symbol(name) => Some(rates.get(&name).cloned().unwrap_or(zero)),
@@ -236,14 +237,14 @@ impl Normal<'_> {
             return Ok(Some(rate));
         }
         let Some(other) = self.known.get(other).copied() else { return Ok(None) };
-        let other = self.field.quotient(Polynomial::variable(other));
+        let other = self.field.quotient(IntegerPolynomial::variable(other));
         let product = self.field.times(&other, &rate)?;
         Ok(Some(if is_negative { product.neg() } else { product }))
     }
 
     /// The derivative of the part of a term that is taken as an angle.
     fn term_along(&mut self, term: &Term, rates: &Rates) -> Result<Option<Quotient>, Missing> {
-        let above = self.field.quotient(Polynomial::term(term.0.clone(), IBig::ONE));
+        let above = self.field.quotient(IntegerPolynomial::term(term.0.clone(), IBig::ONE));
         let whole = self.over(&above, &term.1)?;
         let divisor = self.divisors.get(term).copied().unwrap_or(1);
         let part = self.field.times(&whole, &Quotient::from(RBig::ONE / RBig::from(divisor)))?;
@@ -251,7 +252,7 @@ impl Normal<'_> {
     }
 }
 
-impl Polynomial {
+impl IntegerPolynomial {
     /// The variables that it has.
     pub fn variables(&self) -> Vec<u32> {
         let all = self.terms().iter().flat_map(|(monomial, _)| monomial.powers());
@@ -262,7 +263,7 @@ impl Polynomial {
     }
 
     /// The derivative by a variable, others kept.
-    pub fn slope(&self, variable: u32) -> Polynomial {
+    pub fn slope(&self, variable: u32) -> IntegerPolynomial {
         let mut sum = Sum::default();
         for (monomial, value) in self.terms() {
             let exponent = monomial.exponent(variable);

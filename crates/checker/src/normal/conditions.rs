@@ -4,7 +4,7 @@ use super::super::claim::ListedClaim;
 use super::super::doubt::{Effort, Missing};
 use super::super::listing::{Listing, Step as ListedStep};
 use super::super::witness::{Requirement, RequirementKind, Sides, SidesRelation};
-use super::polynomial::Polynomial;
+use super::polynomial::IntegerPolynomial;
 use super::{Atom, Normal, Part, Quotient, Stop, Term, with_divisors};
 use dashu::rational::RBig;
 use palmistry_math::number::{Function, Refusal};
@@ -71,7 +71,7 @@ enum Step {
     /// There is no state on it.
     Empty,
     /// What is known on it, polynomials that are zero there, and the narrower parts into which it falls where one of them can be solved.
-    Into(Known, Vec<Polynomial>, Option<Vec<Part>>),
+    Into(Known, Vec<IntegerPolynomial>, Option<Vec<Part>>),
 }
 
 impl Normal<'_> {
@@ -268,7 +268,7 @@ impl Normal<'_> {
         for variable in above.variables() {
             let Some(Atom::Symbol(name)) = self.atom_of(variable).cloned() else { continue };
             let parts = above.parts(variable);
-            let slope = parts.get(&1).and_then(Polynomial::number).filter(|slope| !slope.is_zero());
+            let slope = parts.get(&1).and_then(IntegerPolynomial::number).filter(|slope| !slope.is_zero());
             let others = above.variables().into_iter().filter(|other| *other != variable);
             let (Some(slope), false) = (slope, others.into_iter().any(|other| self.depends(other, variable)))
             else {
@@ -354,7 +354,7 @@ impl Normal<'_> {
     }
 
     /// Whether all numerators are sums of multiples of polynomials that are zero.
-    fn are_divided(&mut self, differences: &[Quotient], zero: &[Polynomial]) -> Result<bool, Missing> {
+    fn are_divided(&mut self, differences: &[Quotient], zero: &[IntegerPolynomial]) -> Result<bool, Missing> {
         for difference in differences {
             if difference.is_zero() {
                 continue;

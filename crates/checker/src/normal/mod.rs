@@ -16,19 +16,19 @@ mod tests;
 
 use super::doubt::{Effort, Missing};
 use super::listing::{Listing, Step};
-pub use closure::{Closed, Moving, closed};
+pub use closure::{Closed, MovingField, closed};
 pub use conditions::{Equations, follow};
 use dashu::base::Signed;
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
 use palmistry_math::number::{Function, Refusal};
 pub use pole::has_pole;
-use polynomial::{Monomial, Polynomial, square_part};
-use quotient::{Field, Quotient};
-pub use span::{Row, Spans, span};
+use polynomial::{IntegerPolynomial, Monomial, square_part};
+use quotient::{Quotient, QuotientField};
+pub use span::{RowPlaces, Spans, span};
 pub use states::states_on_parts;
 use std::collections::{BTreeMap, HashMap, HashSet};
-pub use symmetry::{Kept, kept};
+pub use symmetry::{KeptFields, kept};
 
 /// Functions of functions nest no deeper.
 const DEEPEST: usize = 16;
@@ -47,9 +47,9 @@ enum Atom {
     Cosine(Term),
     Exponential(Term),
     /// The square root of a polynomial, times the sign of another one.
-    Root(Polynomial, Polynomial),
+    Root(IntegerPolynomial, IntegerPolynomial),
     /// A function of which nothing is known, of a quotient.
-    Value(Function, Polynomial, Polynomial),
+    Value(Function, IntegerPolynomial, IntegerPolynomial),
 }
 
 impl Atom {
@@ -68,7 +68,7 @@ impl Atom {
 }
 
 /// One monomial of an argument, over what the argument is divided by.
-type Term = (Monomial, Polynomial);
+type Term = (Monomial, IntegerPolynomial);
 
 /// By how much terms of arguments are divided, so that all their multiples are whole.
 type Divisors = HashMap<Term, i64>;
@@ -91,7 +91,7 @@ impl From<Missing> for Stop {
 
 /// Normal forms of the operations of one listing.
 pub struct Normal<'e> {
-    pub field: Field<'e>,
+    pub field: QuotientField<'e>,
     atoms: Vec<Atom>,
     /// How deep functions of functions nest in each.
     depths: Vec<usize>,
@@ -117,7 +117,7 @@ fn with_divisors<'e, T>(
     let mut divisors = Divisors::new();
     loop {
         let mut normal = Normal {
-            field: Field::new(effort),
+            field: QuotientField::new(effort),
             atoms: Vec::new(),
             depths: Vec::new(),
             known: HashMap::new(),
@@ -195,7 +195,7 @@ impl Normal<'_> {
     }
 
     /// The variable of an atom.
-    fn atom(&mut self, atom: Atom, square: Option<Polynomial>) -> Quotient {
+    fn atom(&mut self, atom: Atom, square: Option<IntegerPolynomial>) -> Quotient {
         let variable = match self.known.get(&atom) {
             Some(known) => *known,
             None => {
@@ -210,13 +210,15 @@ impl Normal<'_> {
                 variable
             }
         };
-        self.field.quotient(Polynomial::variable(variable))
+        self.field.quotient(IntegerPolynomial::variable(variable))
     }
 
     /// The variable of a symbol, whatever it is given by.
-    fn symbol(&mut self, name: &str) -> Polynomial {
+    fn symbol(&mut self, name: &str) -> IntegerPolynomial {
         self.atom(Atom::Symbol(name.to_owned()), None);
-        Polynomial::variable(self.known.get(&Atom::Symbol(name.to_owned())).copied().unwrap_or_default())
+        IntegerPolynomial::variable(
+            self.known.get(&Atom::Symbol(name.to_owned())).copied().unwrap_or_default(),
+        )
     }
 
     fn atom_of(&self, variable: u32) -> Option<&Atom> {
@@ -244,10 +246,10 @@ impl Normal<'_> {
     }
 
     /// Numerator and denominator, multiplied out, with whole coefficients that have no common divisor with those of the other.
-    fn fraction(&self, of: &Quotient) -> Result<(Polynomial, Polynomial), Missing> {
+    fn fraction(&self, of: &Quotient) -> Result<(IntegerPolynomial, IntegerPolynomial), Missing> {
         let scaled = |number: IBig, sign: i32| {
             let part = self.field.expanded(&of.powers, sign)?;
-            self.field.relations.times(&Polynomial::constant(number), &part, self.field.effort)
+            self.field.relations.times(&IntegerPolynomial::constant(number), &part, self.field.effort)
         };
         let above = scaled(of.number.numerator().clone(), 1)?;
         let below = scaled(IBig::from(of.number.denominator().clone()), -1)?;
@@ -440,13 +442,14 @@ impl Normal<'_> {
         let under = self.field.power(&under, -1)?.ok_or(Missing::Effort)?;
         let mut found = self.field.times(&Quotient::from(RBig::from(root)), &under)?;
         for prime in primes {
-            let square = Polynomial::constant(IBig::from(prime));
-            let one = Polynomial::constant(IBig::ONE);
+            let square = IntegerPolynomial::constant(IBig::from(prime));
+            let one = IntegerPolynomial::constant(IBig::ONE);
             let root = self.atom(Atom::Root(square.clone(), one), Some(square));
             found = self.field.times(&found, &root)?;
         }
         let sign = if scale.is_negative() { IBig::from(-1) } else { IBig::ONE };
-        let inner = self.field.relations.times(&Polynomial::term(common, sign), &rest, self.field.effort)?;
+        let inner =
+            self.field.relations.times(&IntegerPolynomial::term(common, sign), &rest, self.field.effort)?;
         if inner.number().is_some_and(|number| number.is_one()) {
             return Ok(found);
         }

@@ -75,19 +75,19 @@ impl Monomial {
 
 /// A sum of monomials with coefficients that are not zero, sorted by monomial.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Polynomial(Vec<(Monomial, IBig)>);
+pub struct IntegerPolynomial(Vec<(Monomial, IBig)>);
 
-impl Polynomial {
-    pub fn constant(value: IBig) -> Polynomial {
-        Polynomial::term(Monomial::default(), value)
+impl IntegerPolynomial {
+    pub fn constant(value: IBig) -> IntegerPolynomial {
+        IntegerPolynomial::term(Monomial::default(), value)
     }
 
-    pub fn variable(variable: u32) -> Polynomial {
-        Polynomial::term(Monomial::power(variable, 1), IBig::ONE)
+    pub fn variable(variable: u32) -> IntegerPolynomial {
+        IntegerPolynomial::term(Monomial::power(variable, 1), IBig::ONE)
     }
 
-    pub fn term(monomial: Monomial, value: IBig) -> Polynomial {
-        Polynomial(if value.is_zero() { Vec::new() } else { vec![(monomial, value)] })
+    pub fn term(monomial: Monomial, value: IBig) -> IntegerPolynomial {
+        IntegerPolynomial(if value.is_zero() { Vec::new() } else { vec![(monomial, value)] })
     }
 
     pub fn terms(&self) -> &[(Monomial, IBig)] {
@@ -108,7 +108,7 @@ impl Polynomial {
     }
 
     /// What all terms have in common, the sign of the last term among it, and what is left: the greatest common divisor of the coefficients and of the monomials.
-    pub fn content(mut self) -> (IBig, Monomial, Polynomial) {
+    pub fn content(mut self) -> (IBig, Monomial, IntegerPolynomial) {
         let Some((monomial, value)) = self.0.last() else {
             return (IBig::ZERO, Monomial::default(), self);
         };
@@ -134,7 +134,7 @@ impl Polynomial {
     }
 
     /// The polynomials by which the powers of a variable are multiplied.
-    pub fn parts(&self, variable: u32) -> BTreeMap<u32, Polynomial> {
+    pub fn parts(&self, variable: u32) -> BTreeMap<u32, IntegerPolynomial> {
         let mut parts: BTreeMap<u32, Sum> = BTreeMap::new();
         for (monomial, value) in &self.0 {
             let exponent = monomial.exponent(variable);
@@ -149,7 +149,11 @@ impl Polynomial {
     ///
     /// # Errors
     /// Where it takes too much work.
-    pub fn remainder(&self, divisors: &[Polynomial], effort: &Effort) -> Result<Polynomial, Missing> {
+    pub fn remainder(
+        &self,
+        divisors: &[IntegerPolynomial],
+        effort: &Effort,
+    ) -> Result<IntegerPolynomial, Missing> {
         let mut rest: BTreeMap<Graded, IBig> = self.0.iter().cloned().map(|(m, c)| (Graded(m), c)).collect();
         let mut left = Sum::default();
         let ends: Vec<_> =
@@ -182,7 +186,11 @@ impl Polynomial {
     ///
     /// # Errors
     /// Where it takes too much work.
-    pub fn over(&self, divisor: &Polynomial, effort: &Effort) -> Result<Option<Polynomial>, Missing> {
+    pub fn over(
+        &self,
+        divisor: &IntegerPolynomial,
+        effort: &Effort,
+    ) -> Result<Option<IntegerPolynomial>, Missing> {
         let (Some(last), Some(first)) =
             (divisor.0.iter().max_by(by_degree), divisor.0.iter().min_by(by_degree))
         else {
@@ -191,7 +199,7 @@ impl Polynomial {
         // the terms of the greatest and of the least monomial have to divide each other
         let ends = [(self.0.iter().max_by(by_degree), last), (self.0.iter().min_by(by_degree), first)];
         for (end, by) in ends {
-            let Some(end) = end else { return Ok(Some(Polynomial::default())) };
+            let Some(end) = end else { return Ok(Some(IntegerPolynomial::default())) };
             if end.0.over(&by.0).is_none() || !(&end.1 % &by.1).is_zero() {
                 return Ok(None);
             }
@@ -214,7 +222,7 @@ impl Polynomial {
             quotient.push((monomial, value));
         }
         quotient.sort_unstable_by(|a, b| a.0.cmp(&b.0));
-        Ok(Some(Polynomial(quotient)))
+        Ok(Some(IntegerPolynomial(quotient)))
     }
 }
 
@@ -256,20 +264,20 @@ impl Sum {
         *self.0.entry(monomial).or_default() += value;
     }
 
-    pub fn finish(self) -> Polynomial {
+    pub fn finish(self) -> IntegerPolynomial {
         let mut terms: Vec<_> = self.0.into_iter().filter(|term| !term.1.is_zero()).collect();
         terms.sort_unstable_by(|a, b| a.0.cmp(&b.0));
-        Polynomial(terms)
+        IntegerPolynomial(terms)
     }
 }
 
 /// What the squares of some variables are: polynomials in variables that came before them, or beside them.
 #[derive(Debug, Default)]
-pub struct Relations(Vec<Option<Polynomial>>);
+pub struct Relations(Vec<Option<IntegerPolynomial>>);
 
 impl Relations {
     /// A further variable.
-    pub fn variable(&mut self, square: Option<Polynomial>) -> u32 {
+    pub fn variable(&mut self, square: Option<IntegerPolynomial>) -> u32 {
         self.0.push(square);
         self.0.len() as u32 - 1
     }
@@ -278,7 +286,12 @@ impl Relations {
     ///
     /// # Errors
     /// Where it takes too much work.
-    pub fn times(&self, a: &Polynomial, b: &Polynomial, effort: &Effort) -> Result<Polynomial, Missing> {
+    pub fn times(
+        &self,
+        a: &IntegerPolynomial,
+        b: &IntegerPolynomial,
+        effort: &Effort,
+    ) -> Result<IntegerPolynomial, Missing> {
         effort.spend(2 * (a.0.len() * b.0.len()) as u64)?;
         let mut sum = Sum::default();
         for (first, by) in &a.0 {

@@ -1,13 +1,13 @@
 //! Quotients of products of polynomials: factors stay apart, so that what cancels is seen without a greatest common divisor.
 
 use super::super::doubt::{Effort, Missing};
-use super::polynomial::{Polynomial, Relations, Sum};
+use super::polynomial::{IntegerPolynomial, Relations, Sum};
 use dashu::base::Gcd;
 use dashu::integer::IBig;
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashMap};
 
-/// A number times powers of factors, which are known by their numbers in a [`Field`]; zero where the number is.
+/// A number times powers of factors, which are known by their numbers in a [`QuotientField`]; zero where the number is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Quotient {
     pub number: RBig,
@@ -35,37 +35,37 @@ const LARGEST_POWER: i32 = 1 << 12;
 
 /// Where quotients are reckoned with: variables with their relations, and the factors that were met.
 #[derive(Debug)]
-pub struct Field<'e> {
+pub struct QuotientField<'e> {
     pub relations: Relations,
-    factors: Vec<Polynomial>,
-    known: HashMap<Polynomial, u32>,
+    factors: Vec<IntegerPolynomial>,
+    known: HashMap<IntegerPolynomial, u32>,
     /// The squares of factors that are roots.
     squares: HashMap<u32, Quotient>,
     pub effort: &'e Effort,
 }
 
-impl<'e> Field<'e> {
+impl<'e> QuotientField<'e> {
     pub fn new(effort: &'e Effort) -> Self {
         let (factors, known, squares) = (Vec::new(), HashMap::new(), HashMap::new());
-        Field { relations: Relations::default(), factors, known, squares, effort }
+        QuotientField { relations: Relations::default(), factors, known, squares, effort }
     }
 
     /// Puts the square of a variable that is a root in the place of its powers.
-    pub fn is_root(&mut self, variable: u32, square: Polynomial) {
-        let number = self.number_of(Polynomial::variable(variable));
+    pub fn is_root(&mut self, variable: u32, square: IntegerPolynomial) {
+        let number = self.number_of(IntegerPolynomial::variable(variable));
         let square = self.quotient(square);
         self.squares.insert(number, square);
     }
 
-    pub fn variable(&mut self, square: Option<Polynomial>) -> u32 {
+    pub fn variable(&mut self, square: Option<IntegerPolynomial>) -> u32 {
         self.relations.variable(square)
     }
 
-    pub fn factor(&self, number: u32) -> &Polynomial {
+    pub fn factor(&self, number: u32) -> &IntegerPolynomial {
         &self.factors[number as usize]
     }
 
-    fn number_of(&mut self, factor: Polynomial) -> u32 {
+    fn number_of(&mut self, factor: IntegerPolynomial) -> u32 {
         if let Some(known) = self.known.get(&factor) {
             return *known;
         }
@@ -76,14 +76,14 @@ impl<'e> Field<'e> {
     }
 
     /// A polynomial, its content and the powers of variables that divide it apart.
-    pub fn quotient(&mut self, polynomial: Polynomial) -> Quotient {
+    pub fn quotient(&mut self, polynomial: IntegerPolynomial) -> Quotient {
         if let Some(number) = polynomial.number() {
             return Quotient::from(RBig::from(number));
         }
         let (number, common, rest) = polynomial.content();
         let mut powers = BTreeMap::new();
         for (variable, exponent) in common.powers() {
-            powers.insert(self.number_of(Polynomial::variable(*variable)), *exponent as i32);
+            powers.insert(self.number_of(IntegerPolynomial::variable(*variable)), *exponent as i32);
         }
         let is_one = rest.number().is_some();
         if !is_one {
@@ -164,9 +164,9 @@ impl<'e> Field<'e> {
     ///
     /// # Errors
     /// Where it takes too much work.
-    pub fn expanded(&self, powers: &BTreeMap<u32, i32>, sign: i32) -> Result<Polynomial, Missing> {
-        let mut product = Polynomial::constant(IBig::ONE);
-        let mut wanted: Vec<(&Polynomial, u32)> = powers
+    pub fn expanded(&self, powers: &BTreeMap<u32, i32>, sign: i32) -> Result<IntegerPolynomial, Missing> {
+        let mut product = IntegerPolynomial::constant(IBig::ONE);
+        let mut wanted: Vec<(&IntegerPolynomial, u32)> = powers
             .iter()
             .filter(|(_, power)| power.signum() == sign)
             .map(|(factor, power)| (self.factor(*factor), power.unsigned_abs()))
@@ -222,18 +222,18 @@ impl<'e> Field<'e> {
     ///
     /// # Errors
     /// Where it takes too much work.
-    pub fn above(&self, terms: &[&Quotient]) -> Result<Vec<(RBig, Polynomial)>, Missing> {
+    pub fn above(&self, terms: &[&Quotient]) -> Result<Vec<(RBig, IntegerPolynomial)>, Missing> {
         let present: Vec<&Quotient> = terms.iter().copied().filter(|term| !term.is_zero()).collect();
         let common = common(&present);
         let one = |term: &&Quotient| match term.is_zero() {
-            true => Ok((RBig::ZERO, Polynomial::default())),
+            true => Ok((RBig::ZERO, IntegerPolynomial::default())),
             false => Ok((term.number.clone(), self.without(term, &common)?)),
         };
         terms.iter().map(one).collect()
     }
 
     /// The factors of a term over those that all terms have, multiplied out.
-    fn without(&self, term: &Quotient, common: &BTreeMap<u32, i32>) -> Result<Polynomial, Missing> {
+    fn without(&self, term: &Quotient, common: &BTreeMap<u32, i32>) -> Result<IntegerPolynomial, Missing> {
         let mut powers = term.powers.clone();
         for (factor, least) in common {
             *powers.entry(*factor).or_insert(0) -= least;

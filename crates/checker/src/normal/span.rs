@@ -7,7 +7,7 @@ use super::{Atom, Normal, Quotient, Stop, with_divisors};
 use std::collections::BTreeMap;
 
 /// A row by the places of its entries.
-pub type Row = Vec<usize>;
+pub type RowPlaces = Vec<usize>;
 
 /// What is asked of rows at almost all states at which conditions hold.
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +15,7 @@ pub struct Spans<'l> {
     /// The listing, the conditions and the requirements; no sides.
     pub states: Equations<'l>,
     /// Rows whose rank is asked.
-    pub rows: &'l [Row],
+    pub rows: &'l [RowPlaces],
     /// The rank that they have to have.
     pub rank: usize,
 }
@@ -40,7 +40,8 @@ pub fn span(asked: Spans<'_>, effort: &Effort) -> Result<bool, Missing> {
     }
     with_divisors(effort, |normal| {
         let mut solved = Vec::new();
-        if !normal.solve(asked.states, &mut solved)? {
+        // of no state nothing is generic
+        if !normal.solve(asked.states, &mut solved)? || solved.is_empty() {
             return Ok(false);
         }
         for part in solved {
@@ -53,7 +54,7 @@ pub fn span(asked: Spans<'_>, effort: &Effort) -> Result<bool, Missing> {
     })
 }
 
-pub(super) fn entries(row: &Row, values: &BTreeMap<usize, Quotient>) -> Result<Vec<Quotient>, Missing> {
+pub(super) fn entries(row: &RowPlaces, values: &BTreeMap<usize, Quotient>) -> Result<Vec<Quotient>, Missing> {
     row.iter().map(|place| values.get(place).cloned().ok_or(Missing::Place { place: *place })).collect()
 }
 

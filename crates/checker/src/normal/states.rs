@@ -5,7 +5,7 @@ use super::super::identity::drawn;
 use super::super::listing::{Listing, Step};
 use super::super::state::{ExactCoordinate, ExactState, Ratio};
 use super::conditions::Equations;
-use super::span::{Row, are_open};
+use super::span::{RowPlaces, are_open};
 use super::{Atom, Normal, Part, Quotient, Stop, Term, with_divisors};
 use dashu::rational::RBig;
 use palmistry_math::number::Function;
@@ -22,7 +22,7 @@ const DRAWN: usize = 2;
 /// Where it takes too much work.
 pub fn states_on_parts(
     states: Equations<'_>,
-    rows: &[Row],
+    rows: &[RowPlaces],
     (like, seed): (&ExactState, u64),
     effort: &Effort,
 ) -> Result<Option<Vec<Vec<ExactState>>>, Missing> {
@@ -61,7 +61,7 @@ pub fn states_on_parts(
 }
 
 /// Whether a symbol stands in sines and cosines only, with multiples of one.
-fn is_angle_alone(listing: &Listing, rows: &[Row], name: &str) -> bool {
+fn is_angle_alone(listing: &Listing, rows: &[RowPlaces], name: &str) -> bool {
     let steps = listing.steps();
     let mut holds = vec![false; steps.len()];
     for (place, step) in steps.iter().enumerate() {

@@ -4,44 +4,45 @@
 //! The equations for the coefficients of such a field are linear, and each monomial of what has to vanish is one of them: what solves them is proved by that.
 
 use super::super::doubt::{Effort, Missing};
-use super::closure::Moving;
+use super::closure::MovingField;
 use super::conditions::Equations;
-use super::polynomial::{Monomial, Polynomial};
-use super::span::{Echelon, Row, are_open, entries};
+use super::polynomial::{IntegerPolynomial, Monomial};
+use super::span::{Echelon, RowPlaces, are_open, entries};
 use super::{Normal, Quotient, Stop, with_divisors};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashMap};
 
 /// What is asked of the affine fields that keep a system.
 #[derive(Clone, Copy, Debug)]
-pub struct Kept<'l> {
+pub struct KeptFields<'l> {
     /// The listing, the conditions and the requirements; no sides. No field that moves the states leaves the set on which the conditions hold.
     pub states: Equations<'l>,
     /// The symbols of the columns.
     pub columns: &'l [String],
     /// The differentials of the outputs, and of the conditions.
-    pub constant: &'l [Row],
+    pub constant: &'l [RowPlaces],
     /// The fields.
-    pub fields: &'l [Moving],
+    pub fields: &'l [MovingField],
     /// How many of them there have to be, independent at almost all states; nothing where that is not asked.
     pub dimension: Option<usize>,
     /// Differentials that all of them leave alone.
-    pub inside: &'l [Row],
+    pub inside: &'l [RowPlaces],
     /// Differentials each of which is changed by one of them.
-    pub outside: &'l [Row],
+    pub outside: &'l [RowPlaces],
 }
 
 /// Whether affine fields that keep the system show all that is asked, on each part of the set on which the conditions hold. `false` says nothing.
 ///
 /// # Errors
 /// Where it takes too much work, or an operation has no value.
-pub fn kept(asked: Kept<'_>, effort: &Effort) -> Result<bool, Missing> {
+pub fn kept(asked: KeptFields<'_>, effort: &Effort) -> Result<bool, Missing> {
     if !are_open(asked.states) {
         return Ok(false);
     }
     with_divisors(effort, |normal| {
         let mut solved = Vec::new();
-        if !normal.solve(asked.states, &mut solved)? {
+        // of no state nothing is generic
+        if !normal.solve(asked.states, &mut solved)? || solved.is_empty() {
             return Ok(false);
         }
         for part in solved {
@@ -78,7 +79,7 @@ type Equation = BTreeMap<usize, RBig>;
 type Components = Vec<Quotient>;
 
 impl Normal<'_> {
-    fn is_kept(&mut self, asked: Kept<'_>) -> Result<bool, Stop> {
+    fn is_kept(&mut self, asked: KeptFields<'_>) -> Result<bool, Stop> {
         let mut wanted = [asked.constant, asked.inside, asked.outside].concat().concat();
         for field in asked.fields {
             wanted.extend(field.rates.iter().map(|(_, place)| *place));
@@ -131,7 +132,7 @@ impl Normal<'_> {
     /// All affine fields that change nothing that is constant and whose brackets with the fields that move the states are combinations, with numbers, of some others.
     fn fields_beside(
         &mut self,
-        asked: Kept<'_>,
+        asked: KeptFields<'_>,
         values: &BTreeMap<usize, Quotient>,
         others: &[Components],
     ) -> Result<Vec<Components>, Stop> {
@@ -139,7 +140,7 @@ impl Normal<'_> {
         // what is given by others is no coordinate of the set
         let is_free: Vec<bool> =
             asked.columns.iter().map(|name| !self.part.symbols.contains_key(name)).collect();
-        let symbols: Vec<Option<Polynomial>> = asked
+        let symbols: Vec<Option<IntegerPolynomial>> = asked
             .columns
             .iter()
             .zip(&is_free)
@@ -203,7 +204,7 @@ impl Normal<'_> {
     fn equate(
         &mut self,
         places: Places,
-        symbols: &[Option<Polynomial>],
+        symbols: &[Option<IntegerPolynomial>],
         terms: &[(usize, Quotient)],
         own: &[(usize, Quotient)],
         equations: &mut Vec<Equation>,
@@ -211,7 +212,7 @@ impl Normal<'_> {
         let all: Vec<&Quotient> = terms.iter().chain(own).map(|(_, quotient)| quotient).collect();
         let above = self.field.above(&all)?;
         let mut by_monomial: HashMap<Monomial, Equation> = HashMap::new();
-        let mut enter = |polynomial: &Polynomial, scale: &RBig, place: usize| {
+        let mut enter = |polynomial: &IntegerPolynomial, scale: &RBig, place: usize| {
             for (monomial, value) in polynomial.terms() {
                 let entry = by_monomial.entry(monomial.clone()).or_default().entry(place).or_default();
                 *entry += scale * RBig::from(value.clone());

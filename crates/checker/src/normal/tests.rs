@@ -184,6 +184,7 @@ fn is_shown_generic(head: &str, claim: &str) -> bool {
 fn generic_ranks_are_shown_and_wrong_ones_are_not() {
     let scaled = "system \"scaled\"\nstate x, y\nparam k, b unknown\ndrift f\n  x' = k*x*y\n  y' = -k*x*y\noutput b*x\n";
     let turned = "system \"turned\"\nstate x, y, theta\nangle theta\ndrift f\n  x' = cos(theta)\n  y' = sin(theta)\n  theta' = 0\ninput g\n  theta' = 1\n  others' = 0\noutput x^2 + y^2\n";
+    let gone = "system \"gone\"\nstate x\nparam c unknown\ndrift f\n  x' = x/c\noutput x/c\n";
     let plain = "system \"plain\"\nstate x, v\nparam k unknown\ndrift f\n  x' = v\n  v' = -k*x\noutput x\n";
     for (head, claim, holds) in [
         (STATES, "rank([x, y; 2*x, 2*y]) = 1", true),
@@ -212,6 +213,10 @@ fn generic_ranks_are_shown_and_wrong_ones_are_not() {
         (turned, "unobservable(x, theta)", true),
         (turned, "observable(x^2 + y^2, x*cos(theta) + y*sin(theta))", true),
         (turned, "observable(x)", false),
+        // nothing exists there, and of no state nothing is generic
+        (gone, "rank = 1 where c = 0", false),
+        (gone, "unobservable(x) where c = 0", false),
+        (gone, "unobservable(x, c)", false),
         (plain, "observable(x, v, k)", true),
         (plain, "unobservable(k)", false),
         // the set is left by the field: forms on it alone say nothing
