@@ -108,9 +108,8 @@ fn all_claims_are_decided_and_checked_again() {
     assert!(output.status.success());
     let text = String::from_utf8_lossy(&output.stdout);
     let count = |word: &str| text.lines().filter(|line| line.trim_start().starts_with(word)).count();
-    assert!(count("confirmed") >= 28, "{}", count("confirmed"));
-    assert!(count("half confirmed") >= 25, "{}", count("half confirmed"));
-    assert!(count("consistent") >= 200, "{}", count("consistent"));
-    // long Lie derivatives are not written down, and the fields of proofs stand in no claim
-    assert!(count("not checked") <= 55, "{}", count("not checked"));
+    assert!(count("confirmed") >= 330, "{}", count("confirmed"));
+    // what takes too much work, or is said of functions that are no rational ones
+    assert!(count("half confirmed") + count("consistent") <= 45, "{text}");
+    assert!(count("not checked") <= 8, "{}", count("not checked"));
 }
