@@ -157,6 +157,8 @@ impl Normal<'_> {
             if self.depths.last().is_some_and(|depth| *depth > DEEPEST) {
                 return Err(Missing::Effort.into());
             }
+            // each value is kept
+            self.field.effort.spend(1 + value.powers.len() as u64)?;
             values.insert(place, value);
         }
         Ok(())

@@ -11,6 +11,8 @@ pub struct Monomial(Vec<(u32, u32)>);
 
 /// Exponents are no greater: a sum of two of them is still far from the end of its type.
 const LARGEST_EXPONENT: u32 = 1 << 16;
+/// Polynomials have no more terms: so many take some tens of megabytes.
+const MOST_TERMS: usize = 1 << 17;
 /// Coefficients are no longer, in bits.
 const LONGEST_COEFFICIENT: usize = 1 << 16;
 
@@ -297,6 +299,9 @@ impl Relations {
         for (first, by) in &a.0 {
             for (second, value) in &b.0 {
                 self.collect(&mut sum, first.times(second), by * value, effort)?;
+            }
+            if sum.0.len() > MOST_TERMS {
+                return Err(Missing::Effort);
             }
         }
         Ok(sum.finish())

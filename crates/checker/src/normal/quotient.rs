@@ -98,7 +98,7 @@ impl<'e> QuotientField<'e> {
     /// # Errors
     /// Where a power becomes too great.
     pub fn times(&self, a: &Quotient, b: &Quotient) -> Result<Quotient, Missing> {
-        self.effort.spend(4)?;
+        self.effort.spend(4 + (a.powers.len() + b.powers.len()) as u64 / 4)?;
         if a.is_zero() || b.is_zero() {
             return Ok(Quotient::from(RBig::ZERO));
         }

@@ -256,3 +256,26 @@ fn orders_of_poles_are_shown_where_no_other_factor_vanishes_too() {
         assert_eq!(shown, holds, "{claim}");
     }
 }
+
+/// What is short in a file and long behind it ends by a count: products of many symbols that are kept often, powers of sums, functions of functions.
+#[test]
+fn what_is_too_long_is_given_up() {
+    let many: String = (0..400).map(|n| format!("param p{n}\n")).collect();
+    let product = (0..400).map(|n| format!("p{n}")).collect::<Vec<_>>().join("*");
+    let kept: String = (0..20_000).map(|n| format!("let a{} = -a{n}\n", n + 1)).collect();
+    let nested: String = (0..400).map(|n| format!("let a{} = sin(a{n}) + x\n", n + 1)).collect();
+    let squared: String = (0..40).map(|n| format!("let a{} = a{n}^2 + y\n", n + 1)).collect();
+    for (head, claim) in [
+        (format!("{STATES}{many}let a0 = {product}\n{kept}"), "a20000 + x = a19999 + x + 1"),
+        (format!("{STATES}let a0 = x\n{nested}"), "a400 = x"),
+        (format!("{STATES}let a0 = x\n{squared}"), "a40 = x"),
+        (STATES.to_owned(), "(x + y + z + sin(phi) + cos(psi))^1000 = 0"),
+    ] {
+        let (system, built) = claimed(&head, claim);
+        let Subject::Sides(pairs) = &built.subject else { panic!("{claim}: no sides") };
+        let (listed, pairs) =
+            built.listed(&system, &Listing::default(), |lowering| sides(lowering, pairs)).unwrap();
+        let equations = Equations { sides: &pairs, ..Equations::without_sides(&listed) };
+        assert!(!matches!(follow(equations, &Effort::new(1 << 22)), Ok(true)), "{claim}");
+    }
+}
