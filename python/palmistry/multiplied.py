@@ -24,7 +24,8 @@ class Ring:
         return self.variables.setdefault(key, BITS * len(self.variables))
 
     def times(self, a, b):
-        self.steps += len(a) * len(b)
+        # a monomial is as long as there are variables
+        self.steps += len(a) * len(b) * (1 + BITS * len(self.variables) // 1024)
         spend(len(a) * len(b) // 8)
         if self.steps > STEPS:
             raise TooLong
@@ -137,7 +138,7 @@ def attempt(do):
         return None
 
 class Fields:
-    """The affine fields that change no output and commute with all fields of a system: what they move no output of any experiment tells.
+    """The affine fields that change no output and commute with all fields of a system: what they move is unobservable, and unidentifiable from any experiment.
 
     Each component is a number times its own column plus a constant, or, of few columns, a combination of all of them. What has to vanish is linear in the coefficients, which
     are variables of the ring; once divisors are multiplied by, each monomial in the others is an equation for them."""
@@ -185,7 +186,7 @@ class Fields:
                 rows.setdefault((id(polynomial), m & ~whole), {})[(m & whole).bit_length() - 1] = x
         basis = {}
         for row in rows.values():
-            while common := next((at for at in row if at in basis), None):
+            while (common := next((at for at in row if at in basis), None)) is not None:
                 self.take(row, basis[common], row[common])
             if row:
                 pivot, x = next(iter(row.items()))

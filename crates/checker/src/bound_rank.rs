@@ -10,9 +10,8 @@ use super::listing::{Listing, Step};
 use super::minor::CertifiedRank;
 use super::normal::{Equations, states_on_parts};
 use super::record::{Evidence, VerdictRecord};
-use super::state::{ExactCoordinate, ExactState, Ratio};
+use super::state::{ExactCoordinate, ExactState};
 use super::witness::holds;
-use dashu::rational::RBig;
 use palmistry_lang::{System, Value};
 use palmistry_math::expression::NodeId;
 use palmistry_math::expression::syntax::Relation;
@@ -92,11 +91,7 @@ fn is_full_on_each_part(system: &System, rows: &CertifiedRank, with: Checking<'_
     for (name, value) in &mut like {
         if matches!(value, ExactCoordinate::Step(_)) {
             let is_angle = system.find_symbol(name).is_some_and(|symbol| system.is_angle(symbol));
-            let [none, one] = [RBig::ZERO, RBig::ONE].map(Ratio);
-            *value = match is_angle {
-                true => ExactCoordinate::Angle { sin: none, cos: one },
-                false => ExactCoordinate::Number(one),
-            };
+            *value = ExactCoordinate::unit(is_angle);
         }
     }
     let states = Equations {

@@ -3,18 +3,25 @@
 use super::checking::Checking;
 use super::claim::{BuiltClaim, Compared, Subject, rows_of_words, sides};
 use super::doubt::{Doubt, Effort, Missing};
-use super::listing::Listing;
+use super::evaluation::Evaluation;
+use super::listing::{Listing, Step};
 use super::lowering::Lowering;
 use super::minor::CertifiedRank;
 use super::normal::{
     Closed, Equations, KeptFields, MovingField, RowPlaces, Spans, closed, follow, has_pole, kept, span,
+    states_on_parts,
 };
+use super::state::{ExactCoordinate, ExactState};
+use super::witness::holds;
 use palmistry_lang::{System, Time};
 use palmistry_math::expression::syntax::Relation;
 use palmistry_math::expression::{NodeId, Symbol, gradient};
 
 /// The work on one claim.
 const WORK: u64 = 1 << 22;
+
+/// So often states are drawn.
+const DRAWN: u64 = 8;
 
 /// What is to be shown of almost all states.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +44,10 @@ pub(super) fn is_shown(
     with: Checking<'_>,
 ) -> Result<bool, Doubt> {
     let effort = with.effort.limited(WORK);
+    // of no state everything is so, and nothing is said
+    if asked.given.is_none() && !has_state(system, claim, with) {
+        return Ok(false);
+    }
     match try_show(system, claim, asked, &effort) {
         // what takes too much work, and what has no value on a part, is not shown
         Err(Doubt::NoValue(Missing::Effort | Missing::Refused { .. })) => Ok(false),
@@ -54,11 +65,36 @@ pub(super) fn pole_is_shown(
     let (listed, places) = claim.listed(system, &Listing::default(), |lowering| {
         Ok((lowering.place(expression)?, lowering.place(factor)?))
     })?;
+    if !has_state(system, claim, with) {
+        return Ok(false);
+    }
     let states = Equations::without_sides(&listed);
     match has_pole(states, places, order, &with.effort.limited(WORK)) {
         Err(Missing::Effort | Missing::Refused { .. }) => Ok(false),
         other => Ok(other?),
     }
+}
+
+/// Whether a state is found at which all conditions hold and all requirements are met, in exact numbers.
+fn has_state(system: &System, claim: &BuiltClaim, with: Checking<'_>) -> bool {
+    let Ok((listed, ())) = claim.listed(system, &Listing::default(), |_| Ok(())) else { return false };
+    let mut like = ExactState::new();
+    for step in listed.listing.steps() {
+        if let Step::Symbol(name) = step {
+            let is_angle = system.find_symbol(name).is_some_and(|symbol| system.is_angle(symbol));
+            like.insert(name.clone(), ExactCoordinate::unit(is_angle));
+        }
+    }
+    let effort = with.effort.limited(WORK);
+    let states = Equations::without_sides(&listed);
+    (0..DRAWN).any(|more| {
+        let seed = with.seed.wrapping_add(more);
+        let parts = states_on_parts(states, &[], (&like, seed), &effort).ok().flatten().unwrap_or_default();
+        parts.iter().flatten().any(|state| {
+            let values = Evaluation::new(&listed.listing, state, &effort);
+            values.is_ok_and(|values| holds(&values, &listed.conditions, &listed.requirements).is_ok())
+        })
+    })
 }
 
 fn try_show(

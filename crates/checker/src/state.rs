@@ -66,6 +66,12 @@ pub enum ExactCoordinate {
 }
 
 impl ExactCoordinate {
+    /// A value of the kind that a symbol has, where only the kind is asked: an angle of zero, or one.
+    pub(super) fn unit(is_angle: bool) -> ExactCoordinate {
+        let [none, one] = [RBig::ZERO, RBig::ONE].map(Ratio);
+        if is_angle { ExactCoordinate::Angle { sin: none, cos: one } } else { ExactCoordinate::Number(one) }
+    }
+
     /// Whether sine and cosine, where it is given by them, lie on the unit circle.
     pub fn is_on_the_circle(&self) -> bool {
         match self {

@@ -4,10 +4,10 @@
 //! Lie derivatives of outputs are not written down: each form is reduced by those before it, and derived as it is then. Once no Lie derivative of a form adds anything none of any order does.
 
 use super::super::doubt::{Effort, Missing};
-use super::conditions::Equations;
-use super::polynomial::{IntegerPolynomial, Monomial, Sum};
-use super::span::{Echelon, RowPlaces, are_open, entries};
-use super::{Atom, Normal, Quotient, Stop, Term, with_divisors};
+use super::conditions::{Equations, on_each_part};
+use super::polynomial::IntegerPolynomial;
+use super::span::{Echelon, RowPlaces, entries};
+use super::{Atom, Normal, Quotient, Stop, Term};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
 use palmistry_math::number::Function;
@@ -46,23 +46,7 @@ pub struct Closed<'l> {
 /// # Errors
 /// Where it takes too much work, or an operation has no value.
 pub fn closed(asked: Closed<'_>, effort: &Effort) -> Result<bool, Missing> {
-    if !are_open(asked.states) {
-        return Ok(false);
-    }
-    with_divisors(effort, |normal| {
-        let mut solved = Vec::new();
-        // of no state nothing is generic
-        if !normal.solve(asked.states, &mut solved)? || solved.is_empty() {
-            return Ok(false);
-        }
-        for part in solved {
-            normal.set(part);
-            if !normal.is_closed(asked)? {
-                return Ok(false);
-            }
-        }
-        Ok(true)
-    })
+    on_each_part(asked.states, effort, |normal, _| normal.is_closed(asked))
 }
 
 /// The rates of symbols along a field.
@@ -249,28 +233,5 @@ impl Normal<'_> {
         let divisor = self.divisors.get(term).copied().unwrap_or(1);
         let part = self.field.times(&whole, &Quotient::from(RBig::ONE / RBig::from(divisor)))?;
         self.along(&part, rates)
-    }
-}
-
-impl IntegerPolynomial {
-    /// The variables that it has.
-    pub fn variables(&self) -> Vec<u32> {
-        let all = self.terms().iter().flat_map(|(monomial, _)| monomial.powers());
-        let mut variables: Vec<u32> = all.map(|(variable, _)| *variable).collect();
-        variables.sort_unstable();
-        variables.dedup();
-        variables
-    }
-
-    /// The derivative by a variable, others kept.
-    pub fn slope(&self, variable: u32) -> IntegerPolynomial {
-        let mut sum = Sum::default();
-        for (monomial, value) in self.terms() {
-            let exponent = monomial.exponent(variable);
-            if let Some(rest) = monomial.over(&Monomial::power(variable, 1)) {
-                sum.add(rest, value * IBig::from(exponent));
-            }
-        }
-        sum.finish()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::super::claim::ListedClaim;
 use super::super::doubt::{Effort, Missing};
-use super::super::listing::{Listing, Step as ListedStep};
+use super::super::listing::{Listing, Step};
 use super::super::witness::{Requirement, RequirementKind, Sides, SidesRelation};
 use super::polynomial::IntegerPolynomial;
 use super::{Atom, Normal, Part, Quotient, Stop, Term, with_divisors};
@@ -12,6 +12,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Conditions are solved in no more parts.
 const MOST_PARTS: usize = 64;
+
+/// Slopes of slopes are asked for zeros no deeper.
+const DEEPEST_SLOPE: usize = 8;
 
 /// Equations of a listing, and what is assumed of the states at which they hold.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +35,43 @@ impl<'l> Equations<'l> {
             requirements: &claim.requirements,
         }
     }
+}
+
+/// Whether the states are an open part of those at which equations hold: closed inequalities may leave parts of fewer dimensions, on which nothing is generic.
+pub(super) fn are_open(states: Equations<'_>) -> bool {
+    let is_open = |relation| !matches!(relation, SidesRelation::AtMost | SidesRelation::AtLeast);
+    let needs = |kind| {
+        matches!(kind, RequirementKind::NotZero | RequirementKind::Positive | RequirementKind::InsideOne)
+    };
+    states.conditions.iter().all(|condition| is_open(condition.relation))
+        && states.requirements.iter().all(|requirement| needs(requirement.kind))
+}
+
+/// Whether something holds on each part of the set on which conditions hold, of which there is one at least: of no state nothing is generic. `false` where the set is not open among the solutions of its equations, or these are not solved.
+///
+/// # Errors
+/// Where it takes too much work, or an operation has no value.
+pub(super) fn on_each_part(
+    states: Equations<'_>,
+    effort: &Effort,
+    holds: impl Fn(&mut Normal<'_>, &Part) -> Result<bool, Stop>,
+) -> Result<bool, Missing> {
+    if !are_open(states) {
+        return Ok(false);
+    }
+    with_divisors(effort, |normal| {
+        let mut solved = Vec::new();
+        if !normal.solve(states, &mut solved)? || solved.is_empty() {
+            return Ok(false);
+        }
+        for part in solved {
+            normal.set(part.clone());
+            if !holds(normal, &part)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    })
 }
 
 /// Whether both sides are equal at all states at which they exist, the conditions hold and the requirements are met. `false` says nothing.
@@ -67,7 +107,7 @@ struct Known {
 }
 
 /// What has to be done on a part of the set.
-enum Step {
+enum Narrowing {
     /// There is no state on it.
     Empty,
     /// What is known on it, polynomials that are zero there, and the narrower parts into which it falls where one of them can be solved.
@@ -81,9 +121,9 @@ impl Normal<'_> {
         if *parts > MOST_PARTS {
             return Err(Missing::Effort.into());
         }
-        match self.step(equations, part)? {
-            Step::Empty => Ok(true),
-            Step::Into(known, open, narrower) => {
+        match self.narrowed(equations, part)? {
+            Narrowing::Empty => Ok(true),
+            Narrowing::Into(known, open, narrower) => {
                 if self.are_divided(&known.sides, &open)? {
                     return Ok(true);
                 }
@@ -106,11 +146,11 @@ impl Normal<'_> {
             if parts > MOST_PARTS {
                 return Err(Missing::Effort.into());
             }
-            match self.step(states, part.clone())? {
-                Step::Empty => {}
-                Step::Into(_, _, Some(narrower)) => open.extend(narrower),
-                Step::Into(_, left, None) if left.is_empty() => solved.push(part),
-                Step::Into(..) => return Ok(false),
+            match self.narrowed(states, part.clone())? {
+                Narrowing::Empty => {}
+                Narrowing::Into(_, _, Some(narrower)) => open.extend(narrower),
+                Narrowing::Into(_, left, None) if left.is_empty() => solved.push(part),
+                Narrowing::Into(..) => return Ok(false),
             }
         }
         Ok(true)
@@ -121,10 +161,10 @@ impl Normal<'_> {
         self.part = part;
     }
 
-    fn step(&mut self, equations: Equations<'_>, part: Part) -> Result<Step, Stop> {
+    fn narrowed(&mut self, equations: Equations<'_>, part: Part) -> Result<Narrowing, Stop> {
         self.part = part.clone();
         // where something has no value there is no state
-        let Some(known) = self.known(equations)? else { return Ok(Step::Empty) };
+        let Some(known) = self.known(equations)? else { return Ok(Narrowing::Empty) };
         let mut best: Option<Vec<Solution>> = None;
         let mut open = Vec::new();
         for (zero, circular) in &known.zero {
@@ -132,7 +172,7 @@ impl Normal<'_> {
             let factors = of_positive_power.map(|(factor, _)| *factor);
             let factors: Vec<u32> = factors.filter(|factor| !known.not_zero.contains(factor)).collect();
             if factors.is_empty() {
-                return Ok(Step::Empty);
+                return Ok(Narrowing::Empty);
             }
             let turned = match circular {
                 Some((function, argument)) => self.turned_solutions(*function, argument)?,
@@ -141,7 +181,7 @@ impl Normal<'_> {
             let is_turned = turned.is_some();
             let mut solutions = Some(turned.unwrap_or_default());
             for factor in factors.iter().filter(|_| !is_turned) {
-                let found = self.solutions(*factor, &known.not_zero)?;
+                let found = self.solutions(*factor, &known.not_zero, 0)?;
                 solutions = solutions.zip(found).map(|(all, found)| all.into_iter().chain(found).collect());
             }
             if let Some(solutions) = solutions
@@ -151,7 +191,7 @@ impl Normal<'_> {
             }
             open.push(self.field.expanded(&factors.into_iter().map(|factor| (factor, 1)).collect(), 1)?);
         }
-        let Some(best) = best else { return Ok(Step::Into(known, open, None)) };
+        let Some(best) = best else { return Ok(Narrowing::Into(known, open, None)) };
         let mut all = Vec::new();
         for solution in best {
             let mut narrower = part.clone();
@@ -159,11 +199,11 @@ impl Normal<'_> {
                 Solution::Symbol(name, value) => {
                     // what was solved before may hold this symbol
                     let Some(variable) = self.known.get(&Atom::Symbol(name.clone())).copied() else {
-                        return Ok(Step::Into(known, open, None));
+                        return Ok(Narrowing::Into(known, open, None));
                     };
                     for other in narrower.symbols.values_mut() {
                         let Some(replaced) = self.replaced(other, variable, &value)? else {
-                            return Ok(Step::Into(known, open, None));
+                            return Ok(Narrowing::Into(known, open, None));
                         };
                         *other = replaced;
                     }
@@ -173,7 +213,7 @@ impl Normal<'_> {
             }
             all.push(narrower);
         }
-        Ok(Step::Into(known, open, Some(all)))
+        Ok(Narrowing::Into(known, open, Some(all)))
     }
 
     /// A quotient with another one in the place of a variable; nothing where something else holds the variable.
@@ -298,11 +338,12 @@ impl Normal<'_> {
         Ok(None)
     }
 
-    /// All ways in which a factor is zero, where they can be told: a symbol by the others, or quarter turns.
+    /// All ways in which a factor is zero, where they are known: a symbol by the others, or quarter turns; of slopes of slopes to a depth.
     pub(super) fn solutions(
         &mut self,
         factor: u32,
         not_zero: &BTreeSet<u32>,
+        depth: usize,
     ) -> Result<Option<Vec<Solution>>, Stop> {
         let polynomial = self.field.factor(factor).clone();
         if let [(monomial, _)] = polynomial.terms()
@@ -322,7 +363,11 @@ impl Normal<'_> {
         }
         let variables = polynomial.variables();
         let mut best = None;
+        if depth > DEEPEST_SLOPE {
+            return Ok(None);
+        }
         for variable in &variables {
+            self.field.effort.spend((polynomial.terms().len() + variables.len()) as u64)?;
             let Some(Atom::Symbol(name)) = self.atoms.get(*variable as usize) else { continue };
             let name = name.clone();
             if variables.iter().any(|other| other != variable && self.depends(*other, *variable)) {
@@ -341,7 +386,7 @@ impl Normal<'_> {
             let unknown = slope.powers.keys().copied().filter(|factor| !not_zero.contains(factor));
             let mut is_solved = true;
             for factor in unknown.collect::<Vec<_>>() {
-                match self.solutions(factor, not_zero)? {
+                match self.solutions(factor, not_zero, depth + 1)? {
                     Some(parts) => all.extend(parts),
                     None => is_solved = false,
                 }
@@ -379,7 +424,7 @@ fn circular(
         true => (condition.left, condition.right),
         false => (condition.right, condition.left),
     };
-    let Some(ListedStep::Apply(function @ (Function::Sin | Function::Cos), argument)) =
+    let Some(Step::Apply(function @ (Function::Sin | Function::Cos), argument)) =
         listing.steps().get(place).filter(|_| is_zero(zero))
     else {
         return None;

@@ -262,6 +262,8 @@ impl Normal<'_> {
     fn terms(&self, argument: &Quotient) -> Result<Vec<(Term, RBig)>, Missing> {
         let above = self.field.expanded(&argument.powers, 1)?;
         let below = self.field.expanded(&argument.powers, -1)?;
+        // each term has the denominator in it
+        self.field.effort.spend(4 * (above.terms().len() * below.terms().len()) as u64)?;
         let term = |(monomial, value): &(Monomial, IBig)| {
             ((monomial.clone(), below.clone()), &argument.number * RBig::from(value.clone()))
         };
@@ -355,15 +357,27 @@ impl Normal<'_> {
         match self.atom_of(variable).cloned() {
             Some(Atom::Pi) => {
                 let Some(twelfths) = whole(&(value * RBig::from(12))) else { return Ok(None) };
-                let half = || Quotient::from(RBig::ONE / RBig::from(2));
-                let root = |normal: &mut Self, of: i32| normal.root(&Quotient::from(RBig::from(of)));
-                let (two, three) = (root(self, 2)?, root(self, 3)?);
-                let quarter = self.field.times(&two, &half())?;
-                let quarter = (quarter.clone(), quarter);
-                let minus_third = (half(), self.field.times(&three, &half())?.neg());
-                // a quarter less a third of pi, backwards
-                let (cosine, sine) = self.turned(&quarter, &minus_third)?;
-                Ok(Some(((cosine, sine.neg()), twelfths.rem_euclid(24))))
+                let half = Quotient::from(RBig::ONE / RBig::from(2));
+                let mut half_root = |of: i32| -> Result<Quotient, Missing> {
+                    let root = self.root(&Quotient::from(RBig::from(of)))?;
+                    self.field.times(&root, &half)
+                };
+                let quarter = half_root(2)?;
+                let (quarter, third) = ((quarter.clone(), quarter), (half.clone(), half_root(3)?));
+                let sixth = (third.1.clone(), third.0.clone());
+                let twelfths = twelfths.rem_euclid(24);
+                let mut pair = match twelfths % 6 {
+                    0 => (Quotient::from(RBig::ONE), Quotient::from(RBig::ZERO)),
+                    1 => self.turned(&third, &(quarter.0, quarter.1.neg()))?,
+                    2 => sixth,
+                    3 => quarter,
+                    4 => third,
+                    _ => self.turned(&quarter, &sixth)?,
+                };
+                for _ in 0..twelfths / 6 {
+                    pair = (pair.1.neg(), pair.0);
+                }
+                Ok(Some((pair, 1)))
             }
             Some(Atom::Value(function, above, under)) => {
                 let Some(multiple) = whole(value) else { return Ok(None) };

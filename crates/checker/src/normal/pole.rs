@@ -1,9 +1,8 @@
 //! The order of a pole: the power of a factor in a quotient, where no other factor vanishes with it.
 
 use super::super::doubt::{Effort, Missing};
-use super::conditions::{Equations, Solution};
-use super::span::are_open;
-use super::{Atom, Normal, Part, Quotient, Stop, with_divisors};
+use super::conditions::{Equations, Solution, on_each_part};
+use super::{Atom, Normal, Part, Quotient, Stop};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,28 +16,14 @@ pub fn has_pole(
     order: i64,
     effort: &Effort,
 ) -> Result<bool, Missing> {
-    if !are_open(states) {
-        return Ok(false);
-    }
-    with_divisors(effort, |normal| {
-        let mut solved = Vec::new();
-        if !normal.solve(states, &mut solved)? || solved.is_empty() {
+    on_each_part(states, effort, |normal, part| {
+        let mut values = BTreeMap::new();
+        normal.forms(states.listing, &[expression, vanishing], &mut values)?;
+        let [Some(of), Some(by)] = [expression, vanishing].map(|place| values.get(&place).cloned()) else {
             return Ok(false);
-        }
-        for part in solved {
-            normal.set(part.clone());
-            let mut values = BTreeMap::new();
-            normal.forms(states.listing, &[expression, vanishing], &mut values)?;
-            let [Some(of), Some(by)] = [expression, vanishing].map(|place| values.get(&place).cloned())
-            else {
-                return Ok(false);
-            };
-            let of = normal.field.cancelled(of)?;
-            if normal.order(&part, &of, &by)? != Some(order) {
-                return Ok(false);
-            }
-        }
-        Ok(true)
+        };
+        let of = normal.field.cancelled(of)?;
+        Ok(normal.order(part, &of, &by)? == Some(order))
     })
 }
 
@@ -52,7 +37,7 @@ impl Normal<'_> {
         if of.is_zero() {
             return Ok(None);
         }
-        let Some(solutions) = self.solutions(factor, &BTreeSet::new())? else { return Ok(None) };
+        let Some(solutions) = self.solutions(factor, &BTreeSet::new(), 0)? else { return Ok(None) };
         let order = -i64::from(of.powers.get(&factor).copied().unwrap_or(0));
         for solution in solutions {
             for other in of.powers.keys().filter(|other| **other != factor) {

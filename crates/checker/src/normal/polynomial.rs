@@ -135,6 +135,27 @@ impl IntegerPolynomial {
         (divisor, common, self)
     }
 
+    /// The variables that it has.
+    pub fn variables(&self) -> Vec<u32> {
+        let all = self.terms().iter().flat_map(|(monomial, _)| monomial.powers());
+        let mut variables: Vec<u32> = all.map(|(variable, _)| *variable).collect();
+        variables.sort_unstable();
+        variables.dedup();
+        variables
+    }
+
+    /// The derivative by a variable, others kept.
+    pub fn slope(&self, variable: u32) -> IntegerPolynomial {
+        let mut sum = Sum::default();
+        for (monomial, value) in self.terms() {
+            let exponent = monomial.exponent(variable);
+            if let Some(rest) = monomial.over(&Monomial::power(variable, 1)) {
+                sum.add(rest, value * IBig::from(exponent));
+            }
+        }
+        sum.finish()
+    }
+
     /// The polynomials by which the powers of a variable are multiplied.
     pub fn parts(&self, variable: u32) -> BTreeMap<u32, IntegerPolynomial> {
         let mut parts: BTreeMap<u32, Sum> = BTreeMap::new();
@@ -198,6 +219,7 @@ impl IntegerPolynomial {
         else {
             return Ok(None);
         };
+        effort.spend((self.0.len() + divisor.0.len()) as u64 / 4)?;
         // the terms of the greatest and of the least monomial have to divide each other
         let ends = [(self.0.iter().max_by(by_degree), last), (self.0.iter().min_by(by_degree), first)];
         for (end, by) in ends {

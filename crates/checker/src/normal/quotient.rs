@@ -192,6 +192,7 @@ impl<'e> QuotientField<'e> {
             [one] => return Ok((*one).clone()),
             _ => {}
         }
+        self.effort.spend(terms.iter().map(|term| term.powers.len() as u64).sum::<u64>() / 4)?;
         let common = common(&terms);
         let mut denominator = IBig::ONE;
         for term in &terms {

@@ -1,9 +1,8 @@
 //! Ranks of matrices of expressions, by elimination among quotients: generic ones, on each part of the set on which conditions hold.
 
 use super::super::doubt::{Effort, Missing};
-use super::super::witness::{RequirementKind, SidesRelation};
-use super::conditions::Equations;
-use super::{Atom, Normal, Quotient, Stop, with_divisors};
+use super::conditions::{Equations, on_each_part};
+use super::{Atom, Normal, Quotient, Stop};
 use std::collections::BTreeMap;
 
 /// A row by the places of its entries.
@@ -20,38 +19,12 @@ pub struct Spans<'l> {
     pub rank: usize,
 }
 
-/// Whether the states are an open part of those at which equations hold: closed inequalities may leave parts of fewer dimensions, on which nothing is generic.
-pub(super) fn are_open(states: Equations<'_>) -> bool {
-    let is_open = |relation| !matches!(relation, SidesRelation::AtMost | SidesRelation::AtLeast);
-    let needs = |kind| {
-        matches!(kind, RequirementKind::NotZero | RequirementKind::Positive | RequirementKind::InsideOne)
-    };
-    states.conditions.iter().all(|condition| is_open(condition.relation))
-        && states.requirements.iter().all(|requirement| needs(requirement.kind))
-}
-
 /// Whether all that is asked holds at almost all states of each part of the set. `false` says nothing.
 ///
 /// # Errors
 /// Where it takes too much work, or an operation has no value.
 pub fn span(asked: Spans<'_>, effort: &Effort) -> Result<bool, Missing> {
-    if !are_open(asked.states) {
-        return Ok(false);
-    }
-    with_divisors(effort, |normal| {
-        let mut solved = Vec::new();
-        // of no state nothing is generic
-        if !normal.solve(asked.states, &mut solved)? || solved.is_empty() {
-            return Ok(false);
-        }
-        for part in solved {
-            normal.set(part);
-            if !normal.spans(asked)? {
-                return Ok(false);
-            }
-        }
-        Ok(true)
-    })
+    on_each_part(asked.states, effort, |normal, _| normal.spans(asked))
 }
 
 pub(super) fn entries(row: &RowPlaces, values: &BTreeMap<usize, Quotient>) -> Result<Vec<Quotient>, Missing> {

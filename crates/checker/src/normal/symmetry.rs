@@ -5,10 +5,10 @@
 
 use super::super::doubt::{Effort, Missing};
 use super::closure::MovingField;
-use super::conditions::Equations;
+use super::conditions::{Equations, on_each_part};
 use super::polynomial::{IntegerPolynomial, Monomial};
-use super::span::{Echelon, RowPlaces, are_open, entries};
-use super::{Normal, Quotient, Stop, with_divisors};
+use super::span::{Echelon, RowPlaces, entries};
+use super::{Normal, Quotient, Stop};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashMap};
 
@@ -36,23 +36,7 @@ pub struct KeptFields<'l> {
 /// # Errors
 /// Where it takes too much work, or an operation has no value.
 pub fn kept(asked: KeptFields<'_>, effort: &Effort) -> Result<bool, Missing> {
-    if !are_open(asked.states) {
-        return Ok(false);
-    }
-    with_divisors(effort, |normal| {
-        let mut solved = Vec::new();
-        // of no state nothing is generic
-        if !normal.solve(asked.states, &mut solved)? || solved.is_empty() {
-            return Ok(false);
-        }
-        for part in solved {
-            normal.set(part);
-            if !normal.is_kept(asked)? {
-                return Ok(false);
-            }
-        }
-        Ok(true)
-    })
+    on_each_part(asked.states, effort, |normal, _| normal.is_kept(asked))
 }
 
 /// The place of a coefficient: of the component of a column, that of another column's symbol, or, behind all of them, the constant; and, behind all components, by how much a bracket with a

@@ -1,6 +1,6 @@
 //! Equations that hold and such that do not, and generic ranks, decided by normal forms alone; random ones are held against evaluation at states.
 
-use super::super::bound_span::{Asked, is_shown};
+use super::super::bound_span::{Asked, is_shown, pole_is_shown};
 use super::super::checking::Checking;
 use super::super::claim::{BuiltClaim, Subject, sides, statement};
 use super::super::doubt::Effort;
@@ -8,7 +8,7 @@ use super::super::evaluation::Evaluation;
 use super::super::listing::Listing;
 use super::super::sources::ProofSources;
 use super::super::state::{ExactCoordinate, ExactState, Ratio};
-use super::{Equations, follow, has_pole};
+use super::{Equations, follow};
 use dashu::rational::RBig;
 use palmistry_lang::System;
 use rand::{Rng, RngExt, SeedableRng};
@@ -199,6 +199,14 @@ fn generic_ranks_are_shown_and_wrong_ones_are_not() {
         (STATES, "rank([x, x*y]) = 0 where x*y = 0", false),
         // closed inequalities may leave one state alone
         (STATES, "rank([x]) = 1 where x >= 0, x <= 0", false),
+        // a set without states, which no equation says
+        (STATES, "rank([x, y; 2*x, 2*y]) = 1 where x > 1, y > x", true),
+        (STATES, "rank([x, y; 2*x, 2*y]) = 1 where x > 0, x < 0", false),
+        (STATES, "rank([x]) = 1 where x^2 + y^2 < 0", false),
+        (scaled, "unobservable(b) where x > 0, x < 0", false),
+        // an angle of half turns that is another one as well
+        (STATES, "rank([psi]) = 1 where sin(phi) = 0, phi = psi", false),
+        (STATES, "rank([psi*x]) = 1 where y*sin(phi) = 0, phi = psi", false),
         // half turns: each value of the angle is one
         (STATES, "rank([phi]) = 1 where sin(phi) = 0", false),
         (STATES, "rank([sin(2*phi)]) = 0 where cos(phi) = 0", true),
@@ -243,16 +251,16 @@ fn orders_of_poles_are_shown_where_no_other_factor_vanishes_too() {
         ("pole(1/(x^2 - 2*y), x) = 0 where y = 0", false),
         ("pole(1/(x^2 - 2*y), x) = 2 where y = 0", true),
         ("pole(1/(x*y), x*y) = 1", false),
+        ("pole(1/sqrt(x), x) = 1", false),
+        ("pole((1 - cos(x))/x^2, x) = 2", false),
+        ("pole(1/x, x) = 1 where y > 0, y < 0", false),
     ] {
         let (system, built) = claimed(STATES, claim);
         let Subject::Pole { expression, factor, order } = built.subject else { panic!("{claim}: no pole") };
-        let (listed, places) = built
-            .listed(&system, &Listing::default(), |lowering| {
-                Ok((lowering.place(expression)?, lowering.place(factor)?))
-            })
-            .unwrap();
-        let states = Equations::without_sides(&listed);
-        let shown = has_pole(states, places, order, &Effort::new(1 << 22)).unwrap_or(false);
+        let (sources, effort, interrupt) =
+            (ProofSources::given([]), Effort::default(), AtomicBool::new(false));
+        let with = Checking { sources: &sources, seed: 1, effort: &effort, interrupt: &interrupt };
+        let shown = pole_is_shown(&system, &built, ((expression, factor), order), with).unwrap();
         assert_eq!(shown, holds, "{claim}");
     }
 }
@@ -264,11 +272,16 @@ fn what_is_too_long_is_given_up() {
     let product = (0..400).map(|n| format!("p{n}")).collect::<Vec<_>>().join("*");
     let kept: String = (0..20_000).map(|n| format!("let a{} = -a{n}\n", n + 1)).collect();
     let nested: String = (0..400).map(|n| format!("let a{} = sin(a{n}) + x\n", n + 1)).collect();
+    let sum = |of: &str| (0..400).map(|n| format!("{of}*p{n}")).collect::<Vec<_>>().join(" + ");
+    let slopes = (0..40).fold("x".to_owned(), |inner, n| format!("(p{n}*{inner} + y)"));
     let squared: String = (0..40).map(|n| format!("let a{} = a{n}^2 + y\n", n + 1)).collect();
     for (head, claim) in [
         (format!("{STATES}{many}let a0 = {product}\n{kept}"), "a20000 + x = a19999 + x + 1"),
         (format!("{STATES}let a0 = x\n{nested}"), "a400 = x"),
         (format!("{STATES}let a0 = x\n{squared}"), "a40 = x"),
+        // a denominator in each of many terms, slopes of slopes
+        (format!("{STATES}{many}let a = sin(({})/({}))\n", sum("x"), sum("(x + y)")), "a = x"),
+        (format!("{STATES}{many}let a = {slopes}\n"), "x*y = z where a = 0"),
         (STATES.to_owned(), "(x + y + z + sin(phi) + cos(psi))^1000 = 0"),
     ] {
         let (system, built) = claimed(&head, claim);
