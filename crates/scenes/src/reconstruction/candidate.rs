@@ -38,9 +38,25 @@ impl Found {
         self.shape.chi_square > other.shape.chi_square + fewer + CERTAIN * (2.0 * fewer).sqrt()
     }
 
-    /// Whether the body's centre of mass lies on the body's side of both palms, as it has to.
+    /// Whether it may be a body: its centre of mass lies on its side of both palms, and its mass within its outline.
     pub fn is_body(&self) -> bool {
-        self.motion.iter().all(|at| at.radii.iter().all(|radius| *radius > 0.0))
+        let is_between = self.motion.iter().all(|at| at.radii.iter().all(|radius| *radius > 0.0));
+        is_between && self.holds_its_mass()
+    }
+
+    /// Whether the radius of gyration fits into the outline, [`CERTAIN`] deviations added to its perimeter.
+    ///
+    /// No two points of a convex outline are farther apart than half its perimeter, by H. Jung's theorem (1901) it lies in a circle of `1/sqrt(3)` of that, and mass within a circle
+    /// has no larger radius of gyration. What was not touched is in the deviation.
+    fn holds_its_mass(&self) -> bool {
+        let perimeter = self.shape.perimeter();
+        let most = (perimeter.value + CERTAIN * perimeter.deviation) / (2.0 * 3f64.sqrt());
+        self.unknowns.gyration <= most
+    }
+
+    /// Whether its outline is a spline, and not a series.
+    pub fn is_spline(&self) -> bool {
+        matches!(self.unknowns.support, SupportFunction::Spline(_))
     }
 
     /// Whether another one says the same of the body where it was touched, to a part of this one's deviations.

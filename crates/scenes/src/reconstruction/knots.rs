@@ -87,7 +87,8 @@ impl WholeRecord {
             let before = found.iter().map(|found| found.evidence).fold(f64::NEG_INFINITY, f64::max);
             idle = if end.evidence > before { 0 } else { idle + 1 };
             let explains = |cost: f64| self.is_explained(cost, self.times.len());
-            let is_explained = explains(best.cost) || (is_enough && explains(series.shape.chi_square));
+            let is_borne_out = explains(best.cost) && !end.is_refuted_by(series);
+            let is_explained = is_borne_out || (is_enough && explains(series.shape.chi_square));
             found.push(end);
             if is_explained || idle >= PATIENCE || interrupt.load(Ordering::Relaxed) {
                 break;

@@ -16,6 +16,7 @@ mod start;
 mod stepping;
 mod table;
 mod track;
+mod turning;
 mod whole;
 
 #[doc(hidden)]

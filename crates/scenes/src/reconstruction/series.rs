@@ -109,6 +109,9 @@ impl WholeRecord {
         PARTS.into_iter().filter_map(one).collect()
     }
 
+    /// No more harmonics than these are asked first: what needs more may have no last one.
+    pub const ORDER_OF_SMOOTH: usize = ORDERS[FIRST - 1];
+
     fn orders(&self) -> Vec<usize> {
         let most = (self.times.len() / 4).max(1);
         ORDERS.into_iter().filter(|order| *order <= most).collect()

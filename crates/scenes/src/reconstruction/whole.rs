@@ -28,8 +28,11 @@ const FEWEST: usize = 24;
 /// A misfit below this part of the mean radius is one of the shape; a larger one is one of a motion that is another.
 const FOUND: f64 = 1e-2;
 
-/// So many of the discs go on.
+/// So many ends of searches with few harmonics go on to all orders.
 const KEPT: usize = 6;
+
+/// So many of those that do not explain the readings go on with more harmonics, and as splines.
+const UNEXPLAINED: usize = 2;
 
 /// A deviation of a support radius beyond this part of the mean radius is no small one: errors may not be linear there, and another motion may explain the readings as well.
 const WIDE: f64 = 2e-3;
@@ -60,16 +63,21 @@ impl WholeRecord {
             true => {
                 let mut all = self.elsewhere(starts, &series, interrupt);
                 all.push(series);
-                let likelier = |a: &&Found, b: &&Found| a.evidence.total_cmp(&b.evidence);
-                let splines =
-                    all.iter().max_by(likelier).map(|best| self.splines(best, is_stated, interrupt));
+                let splines = likeliest(&all).map(|best| self.splines(best, is_stated, interrupt));
                 all.extend(splines.into_iter().flatten());
                 all
             }
             false => {
                 let mut all = self.by_what_is_left(series, interrupt)?;
-                if let [series] = &all[..] {
-                    let others = self.elsewhere(starts, series, interrupt);
+                let least = all.iter().min_by(|a, b| a.misfit.total_cmp(&b.misfit)).cloned();
+                let others = least.map(|least| (least.misfit, self.elsewhere(starts, &least, interrupt)));
+                let (least, others) = others.unwrap_or_default();
+                let is_less = |other: &Found| !other.is_spline() && other.misfit < SMALLER * least;
+                if let Some(better) = others.iter().find(|other| is_less(other)) {
+                    // what the first one left was not noise
+                    self.sigma = UNSTATED * self.size();
+                    all = self.by_what_is_left(better.clone(), interrupt)?;
+                } else {
                     all.extend(others);
                 }
                 all
@@ -102,7 +110,13 @@ impl WholeRecord {
         // what is little and still a curve is one that a spline may not leave
         if left <= NOMINAL && (self.is_exact(&series) || self.alike(&series) < ALIKE) {
             self.sigma = left;
-            return Some(vec![series]);
+            let mut all = vec![series];
+            // harmonics without an end may be those of a kink
+            if all[0].shape.support.order() > Self::ORDER_OF_SMOOTH {
+                let splines = self.splines(&all[0], false, interrupt);
+                all.extend(splines.into_iter().filter(|spline| spline.misfit <= NOMINAL));
+            }
+            return Some(all);
         }
         self.sigma = unstated;
         let mut splines = self.splines(&first, false, interrupt);
@@ -164,7 +178,7 @@ impl WholeRecord {
         if !best.as_ref().is_some_and(is_found) && !stop() {
             best = best
                 .into_iter()
-                .chain(self.begun_as_discs(interrupt))
+                .chain(self.begun_by_turning(interrupt))
                 .min_by(|a, b| a.cost.total_cmp(&b.cost));
         }
         best.filter(|_| !stop())
@@ -175,35 +189,37 @@ impl WholeRecord {
         !self.stated || self.is_explained(found.shape.chi_square, self.times.len())
     }
 
+    /// Whether what is left is nothing, or noise.
+    fn is_noise(&self, found: &Found) -> bool {
+        if self.stated { self.is_told(found) } else { self.is_exact(found) || self.alike(found) < ALIKE }
+    }
+
     /// Other series that explain readings with noise as large as these: where one explains them not, or its band is wide, the motion that was met first need not be the likeliest, nor the only one. A search that believes
     /// little of the harmonics runs far along what the readings hardly tell; so each begins with few harmonics and much belief, the likeliest go on.
     fn elsewhere(&self, starts: &[Unknowns], found: &Found, interrupt: &AtomicBool) -> Vec<Found> {
-        if !self.is_wide(found) && self.is_told(found) {
+        if !self.is_wide(found) && self.is_noise(found) {
             return Vec::new();
         }
-        let discs = self.best_discs(interrupt).into_iter();
-        let discs = discs.filter_map(|disc| self.by_parts(disc.x, 1, interrupt)).map(|end| end.x);
-        let begins = std::iter::once(found.unknowns.clone()).chain(starts.iter().cloned()).chain(discs);
-        let mut ends: Vec<Found> = begins.flat_map(|begin| self.believed(&begin, interrupt)).collect();
-        ends.retain(|end| self.is_explained(end.shape.chi_square, self.times.len()));
+        let rows = self.times.len();
+        let mut splines: Vec<Found> = Vec::new();
+        let ends = self.begun_by_turning(interrupt);
+        let begins = std::iter::once(&found.unknowns).chain(starts).chain(ends.iter().map(|end| &end.x));
+        let mut all: Vec<Found> = begins.flat_map(|begin| self.believed(begin, interrupt)).collect();
+        for end in ends.iter().filter(|end| !self.is_explained(end.cost, rows)).take(UNEXPLAINED) {
+            all.extend(self.series(&end.x, interrupt));
+            let round = end.x.support.order();
+            let few = self.at_minimum(end, &convex_weights(self.size(), round));
+            splines.extend(few.into_iter().flat_map(|few| self.splines(&few, false, interrupt)));
+        }
+        all.retain(|end| self.is_explained(end.shape.chi_square, rows));
+        splines.retain(|end| self.is_explained(end.shape.chi_square, rows));
+        let mut ends = all;
         ends.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-        let mut different: Vec<Found> = Vec::new();
-        for end in ends {
-            if different.len() < KEPT
-                && !different.iter().any(|known| known.is_also(&end) && end.is_also(known))
-            {
-                different.push(end);
-            }
-        }
-        let mut all: Vec<Found> = Vec::new();
-        for end in different {
-            let series = self.series_about(&end.unknowns, interrupt);
-            all.extend(
-                series
-                    .filter(|series| !all.iter().any(|known| known.is_also(series) && series.is_also(known))),
-            );
-        }
-        all.retain(|other| !found.is_also(other) || other.evidence > found.evidence);
+        let mut ends = different(ends);
+        ends.truncate(KEPT);
+        let series = ends.iter().filter_map(|end| self.series_about(&end.unknowns, interrupt));
+        let mut all = different(series.collect());
+        all.append(&mut splines);
         all
     }
 
@@ -217,7 +233,7 @@ impl WholeRecord {
     }
 
     /// A series of the order that it has, about which no more is known than that it is convex.
-    fn low(&self, start: Unknowns, rows: usize, interrupt: &AtomicBool) -> Option<Best> {
+    pub(super) fn low(&self, start: Unknowns, rows: usize, interrupt: &AtomicBool) -> Option<Best> {
         let order = start.support.order();
         self.descend(expanded(&start, order), &convex_weights(self.size(), order), rows, interrupt)
     }
@@ -234,32 +250,14 @@ impl WholeRecord {
         end
     }
 
+    /// So many samples of the record are explained one after the other.
+    pub(super) fn parts(&self) -> [usize; 4] {
+        PARTS.map(|part| self.part(part))
+    }
+
     fn part(&self, part: f64) -> usize {
         let rows = self.times.len();
         ((part * rows as f64) as usize).clamp(rows.min(FEWEST), rows)
-    }
-
-    /// From discs that turn at one rate each: the best few by the first part of the record go on to all of it.
-    fn begun_as_discs(&self, interrupt: &AtomicBool) -> Option<Best> {
-        let mut best: Option<Best> = None;
-        for begin in self.best_discs(interrupt) {
-            let end = self.by_parts(begin.x, 1, interrupt);
-            best = best.into_iter().chain(end).min_by(|a, b| a.cost.total_cmp(&b.cost));
-            if best.as_ref().is_some_and(|best| self.is_explained(best.cost, self.times.len())) {
-                break;
-            }
-        }
-        best
-    }
-
-    /// The discs that explain the first part of the record best.
-    fn best_discs(&self, interrupt: &AtomicBool) -> Vec<Best> {
-        let rows = self.part(PARTS[0]);
-        let starts = self.discs().into_iter();
-        let mut begun: Vec<Best> = starts.filter_map(|start| self.low(start, rows, interrupt)).collect();
-        begun.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        begun.truncate(KEPT);
-        begun
     }
 
     /// What is left more than noise explains makes all deviations larger; and where neighbours are left alike, no sample tells as much as an independent one.
@@ -310,14 +308,37 @@ impl WholeRecord {
     }
 }
 
-/// Candidates by their probabilities, the likeliest first. One that the readings refute beside another one is none, however few unknowns it has: it was not found, or is not the body.
+/// Without those that say the same as one before them.
+fn different(candidates: Vec<Found>) -> Vec<Found> {
+    let mut kept: Vec<Found> = Vec::new();
+    for found in candidates {
+        if !kept.iter().any(|known| known.is_also(&found) && found.is_also(known)) {
+            kept.push(found);
+        }
+    }
+    kept
+}
+
+/// Which candidates the readings refute beside another one: these are none, however few unknowns they have; they were not found, or are not the body.
+fn refuted(candidates: &[Found]) -> Vec<bool> {
+    candidates.iter().map(|found| candidates.iter().any(|other| found.is_refuted_by(other))).collect()
+}
+
+/// The likeliest that the readings do not refute, a body if there is one.
+fn likeliest(candidates: &[Found]) -> Option<&Found> {
+    let any = candidates.iter().any(Found::is_body);
+    let left = candidates.iter().zip(refuted(candidates));
+    let left = left.filter(|(found, refuted)| !refuted && (!any || found.is_body()));
+    left.map(|(found, _)| found).max_by(|a, b| a.evidence.total_cmp(&b.evidence))
+}
+
+/// Candidates that the readings do not refute by their probabilities, the likeliest first.
 fn weighed(mut candidates: Vec<Found>) -> Option<Told> {
-    let refuted: Vec<bool> =
-        candidates.iter().map(|found| candidates.iter().any(|other| found.is_refuted_by(other))).collect();
-    let mut refuted = refuted.into_iter();
+    let mut refuted = refuted(&candidates).into_iter();
     candidates.retain(|_| refuted.next() == Some(false));
     candidates.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-    let mut candidates = candidates.into_iter();
+    // the same minimum, met twice, is no likelier than met once
+    let mut candidates = different(candidates).into_iter();
     let best = candidates.next()?;
     let weights: Vec<(f64, Found)> =
         candidates.map(|other| ((other.evidence - best.evidence).exp(), other)).collect();

@@ -1,0 +1,121 @@
+//! Beginnings for a body whose motion nobody knows: rates on a grid, each bent by a constant acceleration.
+//!
+//! Along a motion that is given the contacts are linear in the support function, so that each such motion has one body that explains them best, in one step and without a first
+//! guess. A body that hardly turns is explained by many of them; what the law of motion says of it, a search from each has to find out.
+
+use super::candidate::Best;
+use super::descent::{joined, solved, triangle_of};
+use super::law::pose;
+use super::record::{Unknowns, WholeRecord};
+use super::series::convex_weights;
+use nalgebra::DMatrix;
+use palmistry_bodies::shape::{SupportFunction, SupportSeries};
+use std::sync::atomic::AtomicBool;
+
+/// Harmonics of a body that is found along a given motion.
+const ORDER: usize = 6;
+
+/// Rates on the grid on either side of rest, and accelerations, in parts of what bends the fastest rate to rest within the part of the record that is looked at.
+const RATES: i32 = 30;
+const BENDS: i32 = 10;
+
+/// So many ends go on from one part of the record to the next.
+const KEPT: [usize; 4] = [24, 16, 12, 6];
+
+/// So many samples of the part are looked at.
+const LOOKED_AT: usize = 100;
+
+/// What contacts are worth in parts of the size of the body, where a motion is no more than near the true one.
+const WORTH: f64 = 1e-3;
+
+/// What the angle at the end of the part is worth, in rad, that the law of motion adds to the one of a given motion.
+const TURN: f64 = 1e-2;
+
+/// Two ends of searches are one whose sums of squares and rates differ by no more than this part, sums by no more than a unit.
+const SAME: f64 = 1e-3;
+
+fn is_same(a: &Best, b: &Best) -> bool {
+    let most = SAME * a.x.rate.abs().max(b.x.rate.abs());
+    (a.cost - b.cost).abs() <= SAME * a.cost.max(b.cost) + 1.0 && (a.x.rate - b.x.rate).abs() <= most
+}
+
+impl WholeRecord {
+    /// What is found from each rate of the grid: the ends of searches through the record that differ, the best first.
+    pub fn begun_by_turning(&self, interrupt: &AtomicBool) -> Vec<Best> {
+        let mut found: Vec<Best> = self.along_a_grid().into_iter().map(|x| Best { x, cost: 0.0, is_settled: false }).collect();
+        for (part, kept) in self.parts().into_iter().zip(KEPT) {
+            let ends = found.into_iter().filter_map(|begin| self.low(begin.x, part, interrupt));
+            let mut ends: Vec<Best> = ends.collect();
+            ends.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            found = Vec::new();
+            for end in ends {
+                if found.len() < kept && !found.iter().any(|known| is_same(known, &end)) {
+                    found.push(end);
+                }
+            }
+        }
+        found
+    }
+
+    /// For each rate of a grid that is fine near rest the acceleration that explains the first part of the record best, by the contacts and by the law of motion in the mean.
+    fn along_a_grid(&self) -> Vec<Unknowns> {
+        let discs = self.discs();
+        let Some(disc) = discs.first() else { return Vec::new() };
+        let fastest = discs.iter().map(|disc| disc.rate.abs()).fold(0.0, f64::max);
+        let rows = self.parts()[0];
+        let span = self.times[rows - 1] - self.times[0];
+        let cubes = |n: i32| (-n..=n).map(move |i| (f64::from(i) / f64::from(n)).powi(3));
+        let best = |rate: f64| {
+            let disc = Unknowns { rate, ..disc.clone() };
+            let tried = cubes(BENDS).filter_map(|bend| self.along(&disc, bend * fastest / span, rows));
+            tried.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, x)| x)
+        };
+        match self.rate {
+            Some(rate) => best(rate).into_iter().collect(),
+            None => cubes(RATES).filter_map(|rate| best(rate * fastest)).collect(),
+        }
+    }
+
+    /// The body that explains the first rows best along a disc's rate and an acceleration, and what it leaves.
+    fn along(&self, disc: &Unknowns, acceleration: f64, rows: usize) -> Option<(f64, Unknowns)> {
+        let prior = convex_weights(self.size(), ORDER);
+        let p = prior.len();
+        let support = SupportSeries { mean: disc.support.mean(), harmonics: vec![[0.0; 2]; ORDER] };
+        let support = SupportFunction::from(support);
+        let worth = WORTH * self.size();
+        let places: Vec<usize> = (0..rows).step_by(rows.div_ceil(LOOKED_AT).max(1)).collect();
+        let mut all = DMatrix::zeros(2 * places.len(), p + 1);
+        let moved = |place: usize| {
+            let time = self.times[place] - self.times[0];
+            let phi = self.phi + time * (disc.rate + 0.5 * time * acceleration);
+            (self.times[place], phi, disc.rate + time * acceleration)
+        };
+        for (row, place) in places.iter().enumerate() {
+            let (time, phi, _) = moved(*place);
+            let palms = self.palms_at(time);
+            let bases = palms.normals(phi).map(|angle| support.basis(angle));
+            for j in 0..p {
+                let by = bases.each_ref().map(|basis| [basis[j][0], basis[j][1], 0.0]);
+                let contacts = pose(&palms, &by, 0.0, disc.gyration, 0.0).contacts;
+                for palm in 0..2 {
+                    all[(2 * row + palm, j)] = contacts[palm] / worth;
+                }
+            }
+            for palm in 0..2 {
+                all[(2 * row + palm, p)] = self.contacts[palm][*place] / worth;
+            }
+        }
+        let triangle = joined(&triangle_of(all), &prior, &vec![0.0; p]);
+        let coefficients = solved(&triangle)?;
+        let support = support.with(coefficients.as_slice())?;
+        let x = Unknowns { support, ..disc.clone() };
+        let missing = places.iter().map(|place| {
+            let (time, phi, rate) = moved(*place);
+            self.pose(time, phi, rate, &x).acceleration - acceleration
+        });
+        let missing = missing.sum::<f64>() / places.len() as f64;
+        let span = self.times[rows - 1] - self.times[0];
+        let turn = 0.5 * span * span * missing / TURN;
+        Some((triangle[(p, p)].powi(2) + turn * turn, x))
+    }
+}
