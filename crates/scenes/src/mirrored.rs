@@ -1,6 +1,6 @@
 //! Other states that explain the measurements as well as an estimate does: its mirror images.
 //!
-//! A robot's heading turned by half a turn with a negative scale moves as the robot does. Whoever begins a search near one of two such states finds it, and learns nothing of the other one.
+//! A robot's heading turned by half a turn with a negative scale moves as the robot does, and two compartments that are read as a sum exchange their names. Whoever begins a search near one of two such states finds it, and learns nothing of the other one.
 //! The images are those of [`palmistry_rank::observability::mirrors`], exact and of the class that is described there; those outside of the stated bounds are no others.
 
 use super::run::Experiment;
@@ -48,21 +48,36 @@ impl Experiment {
                 let name = system.symbol_name(*symbol);
                 let place = names.iter().position(|own| *own == name)?;
                 let value = state[place];
+                let mut deviation = deviations[place];
+                let mut middle = 0.0;
                 let turned = match turned {
                     Image::Negative => -value,
                     Image::HalfTurn => value + PI,
                     Image::Supplement => PI - value,
+                    Image::Other { symbol, is_negative } => {
+                        let name = system.symbol_name(*symbol);
+                        let other = names.iter().position(|own| *own == name)?;
+                        deviation = deviation.hypot(deviations[other]);
+                        let turned = if *is_negative { -state[other] } else { state[other] };
+                        middle = f64::midpoint(value, turned);
+                        turned
+                    }
                 };
                 let is_angle = system.is_angle(*symbol);
                 let near = if is_angle { turned - ((turned - value) / TAU).round() * TAU } else { turned };
-                is_other |= (near - value).abs() > APART * deviations[place];
+                let differs = (near - value).abs() > APART * deviation;
+                is_other |= differs;
                 // an angle is named between minus and plus a half turn, unless its bounds are elsewhere
                 let first = (turned + PI).rem_euclid(TAU) - PI;
                 let ways = if is_angle { vec![first, first - TAU, first + TAU] } else { vec![turned] };
                 let named = ways.into_iter().find(|way| self.is_within(name, *way))?;
                 image.push(format!("{name} = {named:.6}"));
-                if !is_angle {
-                    excluding.push(format!("{name} {} 0", if value > 0.0 { ">" } else { "<" }));
+                if !is_angle && differs {
+                    let side = if value > middle { ">" } else { "<" };
+                    excluding.push(match middle {
+                        0.0 => format!("{name} {side} 0"),
+                        middle => format!("{name} {side} {middle:.6}"),
+                    });
                 }
             }
             let exclude = match excluding.as_slice() {

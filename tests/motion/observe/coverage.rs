@@ -242,8 +242,10 @@ fn bodies_that_hardly_turn_are_found_or_tell_nothing() {
         (Family::Smooth, 0.0, 335, 8),
         (Family::Smooth, 1e-4, 337, 8),
     ];
-    let counts: Vec<Counts> =
-        bodies.into_par_iter().map(|(family, noise, seed, body)| study(family, noise, &[body], seed)).collect();
+    let counts: Vec<Counts> = bodies
+        .into_par_iter()
+        .map(|(family, noise, seed, body)| study(family, noise, &[body], seed))
+        .collect();
     let told: Vec<usize> = counts.iter().map(|counts| counts.told).collect();
     println!("{counts:?}");
     assert!(counts.iter().all(|counts| counts.held == counts.told), "{counts:?}");

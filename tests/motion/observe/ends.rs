@@ -188,28 +188,68 @@ fn a_mirror_image_is_named_beside_the_estimate() {
              guess = {{ x = 0, y = 0, heading = 0.3, scale = 1 }}\nwindow = 80\nsteps = 50\n{more}"
         )
     };
-    let named = |found: &Value| -> Vec<String> {
-        let remarks = found["observers"][0]["remarks"].as_array().unwrap();
-        let words = remarks.iter().filter_map(Value::as_str).map(str::to_owned);
-        words.filter(|remark| remark.contains("explains the same measurements")).collect()
-    };
     let (_, found) = observe(&write(&folder, "scene.toml", scene("")), &[]);
     let (update, arrived) = first(&found);
     assert!(arrived, "{found}");
     assert!(off(update, "scale", scale) < 4.0 && off(update, "heading", heading) < 4.0, "{update}");
-    let images = named(&found);
+    let images = images(&found);
     assert_eq!(images.len(), 1, "{found}");
-    let value = |name: &str| -> f64 {
-        let rest = images[0].split(&format!("{name} = ")).nth(1).unwrap();
-        rest.split([',', ' ']).next().unwrap().parse().unwrap()
-    };
+    let value = |name: &str| value(&images[0], name);
     assert!((value("scale") + scale).abs() < 1e-2, "{images:?}");
     assert!(((value("heading") - heading).abs() - std::f64::consts::PI).abs() < 1e-2, "{images:?}");
     assert!(images[0].contains("scale > 0"), "{images:?}");
     // where that is said nothing else is left to say
     let (_, found) = observe(&write(&folder, "scene.toml", scene("bounds = { scale = [0.1, 3] }\n")), &[]);
     assert!(first(&found).1, "{found}");
-    assert_eq!(named(&found), Vec::<String>::new());
+    assert_eq!(self::images(&found), Vec::<String>::new());
+}
+
+/// Two compartments that are read as a sum: which of them is which nothing tells, and a bound between their rates does. One that is read by itself as well has no other name.
+#[test]
+fn an_image_that_exchanges_unknowns_is_named() {
+    let folder = folder();
+    let model = |more: &str| {
+        format!(
+            "system \"Two compartments\" state a, b param k, l unknown drift f a' = -k*a b' = -l*b output a + b{more} \
+             sample a in [0, 4] b in [0, 4] k in [1/10, 3] l in [1/10, 3]"
+        )
+    };
+    write(&folder, "sum.proof", model(""));
+    write(&folder, "both.proof", model(", a"));
+    let scene = |model: &str, more: &str| {
+        format!(
+            "title = \"A sum\"\nmodel = \"{model}.proof\"\nduration = 4\nsamples = 81\n[start]\na = 2\nb = 1\nk = 2\nl = 0.3\n[sensor]\nnoise = 1e-4\n\
+             [observer]\nmethods = [\"trust-region\"]\nestimate = [\"a\", \"b\", \"k\", \"l\"]\nguess_off = 0.1\nwindow = 80\nsteps = 50\n{more}"
+        )
+    };
+    let (_, found) = observe(&write(&folder, "sum.toml", scene("sum", "")), &[]);
+    assert!(first(&found).1, "{found}");
+    let named = images(&found);
+    assert_eq!(named.len(), 1, "{found}");
+    for (name, truth) in [("a", 1.0), ("b", 2.0), ("k", 0.3), ("l", 2.0)] {
+        assert!((value(&named[0], name) - truth).abs() < 0.01, "{named:?}");
+    }
+    let between: f64 = named[0].split("k > ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert!((between - 1.15).abs() < 0.01, "{named:?}");
+    let bounds = "bounds = { k = [1, 3] }\n";
+    for scene in [scene("sum", bounds), scene("both", "")] {
+        let (_, found) = observe(&write(&folder, "other.toml", scene), &[]);
+        assert!(first(&found).1, "{found}");
+        assert_eq!(images(&found), Vec::<String>::new());
+    }
+}
+
+/// What is said of other states that explain the measurements.
+fn images(found: &Value) -> Vec<String> {
+    let remarks = found["observers"][0]["remarks"].as_array().unwrap();
+    let words = remarks.iter().filter_map(Value::as_str).map(str::to_owned);
+    words.filter(|remark| remark.contains("explains the same measurements")).collect()
+}
+
+/// A value in such a sentence.
+fn value(image: &str, name: &str) -> f64 {
+    let rest = image.split(&format!("{name} = ")).nth(1).unwrap();
+    rest.split([',', ' ']).next().unwrap().parse().unwrap()
 }
 
 /// A pendulum that is struck once, read without a stated noise: the model without the blow explains no window that holds it. What such a window leaves is no noise, and is no reason to call it blind. A filter that

@@ -39,20 +39,31 @@ fn is_same(a: &Best, b: &Best) -> bool {
     (a.cost - b.cost).abs() <= SAME * a.cost.max(b.cost) + 1.0 && (a.x.rate - b.x.rate).abs() <= most
 }
 
+/// A motion from the angle of the first sample on.
+#[derive(Clone, Copy)]
+struct Given {
+    /// At the first sample, in rad/s.
+    rate: f64,
+    /// In rad/s^2.
+    acceleration: f64,
+}
+
 impl WholeRecord {
     /// What is found from each rate of the grid: the ends of searches through the record that differ, the best first.
     pub fn begun_by_turning(&self, interrupt: &AtomicBool) -> Vec<Best> {
-        let mut found: Vec<Best> = self.along_a_grid().into_iter().map(|x| Best { x, cost: 0.0, is_settled: false }).collect();
+        let mut begins = self.along_a_grid();
+        let mut found: Vec<Best> = Vec::new();
         for (part, kept) in self.parts().into_iter().zip(KEPT) {
-            let ends = found.into_iter().filter_map(|begin| self.low(begin.x, part, interrupt));
+            let ends = begins.into_iter().filter_map(|begin| self.low(begin, part, interrupt));
             let mut ends: Vec<Best> = ends.collect();
             ends.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-            found = Vec::new();
+            found.clear();
             for end in ends {
                 if found.len() < kept && !found.iter().any(|known| is_same(known, &end)) {
                     found.push(end);
                 }
             }
+            begins = found.iter().map(|end| end.x.clone()).collect();
         }
         found
     }
@@ -64,10 +75,15 @@ impl WholeRecord {
         let fastest = discs.iter().map(|disc| disc.rate.abs()).fold(0.0, f64::max);
         let rows = self.parts()[0];
         let span = self.times[rows - 1] - self.times[0];
+        let places: Vec<usize> = (0..rows).step_by(rows.div_ceil(LOOKED_AT).max(1)).collect();
         let cubes = |n: i32| (-n..=n).map(move |i| (f64::from(i) / f64::from(n)).powi(3));
         let best = |rate: f64| {
-            let disc = Unknowns { rate, ..disc.clone() };
-            let tried = cubes(BENDS).filter_map(|bend| self.along(&disc, bend * fastest / span, rows));
+            let tried = cubes(BENDS).filter_map(|bend| {
+                let given = Given { rate, acceleration: bend * fastest / span };
+                let (contacts_miss, x) = self.along(given, &places, disc)?;
+                let turn_missed = 0.5 * span * span * self.acceleration_missed(given, &places, &x);
+                Some((contacts_miss + (turn_missed / TURN).powi(2), x))
+            });
             tried.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, x)| x)
         };
         match self.rate {
@@ -76,46 +92,49 @@ impl WholeRecord {
         }
     }
 
-    /// The body that explains the first rows best along a disc's rate and an acceleration, and what it leaves.
-    fn along(&self, disc: &Unknowns, acceleration: f64, rows: usize) -> Option<(f64, Unknowns)> {
+    /// Time, angle and rate of a given motion at a sample.
+    fn given_at(&self, given: Given, place: usize) -> (f64, f64, f64) {
+        let since = self.times[place] - self.times[0];
+        let phi = self.phi + since * (given.rate + 0.5 * since * given.acceleration);
+        (self.times[place], phi, given.rate + since * given.acceleration)
+    }
+
+    /// The body that explains samples best along a given motion, and what it leaves: the sum of squares in parts of [`WORTH`].
+    fn along(&self, given: Given, places: &[usize], disc: &Unknowns) -> Option<(f64, Unknowns)> {
         let prior = convex_weights(self.size(), ORDER);
         let p = prior.len();
-        let support = SupportSeries { mean: disc.support.mean(), harmonics: vec![[0.0; 2]; ORDER] };
-        let support = SupportFunction::from(support);
+        let round = SupportSeries { mean: disc.support.mean(), harmonics: vec![[0.0; 2]; ORDER] };
+        let round = SupportFunction::from(round);
         let worth = WORTH * self.size();
-        let places: Vec<usize> = (0..rows).step_by(rows.div_ceil(LOOKED_AT).max(1)).collect();
-        let mut all = DMatrix::zeros(2 * places.len(), p + 1);
-        let moved = |place: usize| {
-            let time = self.times[place] - self.times[0];
-            let phi = self.phi + time * (disc.rate + 0.5 * time * acceleration);
-            (self.times[place], phi, disc.rate + time * acceleration)
-        };
-        for (row, place) in places.iter().enumerate() {
-            let (time, phi, _) = moved(*place);
+        let mut rows = DMatrix::zeros(2 * places.len(), p + 1);
+        for (i, place) in places.iter().enumerate() {
+            let (time, phi, _) = self.given_at(given, *place);
             let palms = self.palms_at(time);
-            let bases = palms.normals(phi).map(|angle| support.basis(angle));
-            for j in 0..p {
-                let by = bases.each_ref().map(|basis| [basis[j][0], basis[j][1], 0.0]);
-                let contacts = pose(&palms, &by, 0.0, disc.gyration, 0.0).contacts;
-                for palm in 0..2 {
-                    all[(2 * row + palm, j)] = contacts[palm] / worth;
+            let bases = palms.normals(phi).map(|angle| round.basis(angle));
+            for j in 0..=p {
+                let contacts = match j < p {
+                    true => {
+                        let by = bases.each_ref().map(|basis| [basis[j][0], basis[j][1], 0.0]);
+                        pose(&palms, &by, 0.0, disc.gyration, 0.0).contacts
+                    }
+                    false => [self.contacts[0][*place], self.contacts[1][*place]],
+                };
+                for (palm, contact) in contacts.into_iter().enumerate() {
+                    rows[(2 * i + palm, j)] = contact / worth;
                 }
             }
-            for palm in 0..2 {
-                all[(2 * row + palm, p)] = self.contacts[palm][*place] / worth;
-            }
         }
-        let triangle = joined(&triangle_of(all), &prior, &vec![0.0; p]);
-        let coefficients = solved(&triangle)?;
-        let support = support.with(coefficients.as_slice())?;
-        let x = Unknowns { support, ..disc.clone() };
-        let missing = places.iter().map(|place| {
-            let (time, phi, rate) = moved(*place);
-            self.pose(time, phi, rate, &x).acceleration - acceleration
+        let triangle = joined(&triangle_of(rows), &prior, &vec![0.0; p]);
+        let support = round.with(solved(&triangle)?.as_slice())?;
+        Some((triangle[(p, p)].powi(2), Unknowns { rate: given.rate, support, ..disc.clone() }))
+    }
+
+    /// What the law of motion asks of a body in the mean beyond a given acceleration, in rad/s^2.
+    fn acceleration_missed(&self, given: Given, places: &[usize], x: &Unknowns) -> f64 {
+        let missed = places.iter().map(|place| {
+            let (time, phi, rate) = self.given_at(given, *place);
+            self.pose(time, phi, rate, x).acceleration - given.acceleration
         });
-        let missing = missing.sum::<f64>() / places.len() as f64;
-        let span = self.times[rows - 1] - self.times[0];
-        let turn = 0.5 * span * span * missing / TURN;
-        Some((triangle[(p, p)].powi(2) + turn * turn, x))
+        missed.sum::<f64>() / places.len() as f64
     }
 }

@@ -157,7 +157,7 @@ impl WholeRecord {
         self.at_minimum(&best, &prior).filter(|_| best.is_settled)
     }
 
-    /// A series that explains most, from where others began; where what they found explains nothing, from discs at rates on a grid.
+    /// A series that explains most, from where others began; where what they found explains nothing, from motions on a grid.
     fn begin(&self, starts: &[Unknowns], interrupt: &AtomicBool) -> Option<Best> {
         let rows = self.times.len();
         let stop = || interrupt.load(Ordering::Relaxed);

@@ -110,13 +110,18 @@ pub(super) fn values_of_expression(model: &Model, exchanges: &[Exchange], asked:
 
 /// The maps that are found, but the one that changes nothing.
 pub(super) fn exchanges(model: &Model) -> Vec<Exchange> {
+    let is_fixed = |place: usize| {
+        model.variables[place].is_known || model.given.iter().any(|(given, _)| *given == place)
+    };
+    exchanges_beside(model, (0..model.variables.len()).map(is_fixed).collect())
+}
+
+/// The same where these variables, and no others, keep their values.
+pub(super) fn exchanges_beside(model: &Model, fixed: Vec<bool>) -> Vec<Exchange> {
     // the half turns of angles are no changes of sign
     if !model.angles.is_empty() {
         return Vec::new();
     }
-    let fixed: Vec<bool> = (0..model.variables.len())
-        .map(|place| model.variables[place].is_known || model.given.iter().any(|(given, _)| *given == place))
-        .collect();
     let begin: Vec<u64> = model
         .variables
         .iter()
