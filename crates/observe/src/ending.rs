@@ -12,6 +12,9 @@ use std::ops::Range;
 const FAR_FROM_ANSWER: f64 = 10.0;
 const ROUGHLY: f64 = 1e-5;
 
+/// As many steps again that leave more than this part have led nowhere.
+const STILL: f64 = 0.99;
+
 impl MovingWindow {
     /// Where a search from a state ends: by a region of trust, with integration that is less exact first, and where that takes all its steps, by
     /// Newton's method, whose second derivatives know how a valley bends. Where there is an answer, which leaves so much in the readings' unit, no more is
@@ -32,12 +35,21 @@ impl MovingWindow {
             let most = FAR_FROM_ANSWER * left.max(task.sigma).max(ROUGHLY * read);
             rough.misfit.is_nan() || rough.misfit > most
         };
-        // a least error that is far above a noise that is known will not come down to it
-        let is_least = matches!(rough.end, UpdateEnd::DoesNotFit | UpdateEnd::Stuck);
-        let is_refuted = is_least && task.noise != Noise::Unstated && task.loss == Loss::default();
-        if answer.map_or(is_refuted && is_far(0.0), is_far) {
+        if answer.map_or_else(|| is_refuted(task, &rough) && is_far(0.0), is_far) {
             return rough;
         }
+        // what still comes down after all of its steps goes on; what does not will not come down to a noise that is known
+        let is_slow = answer.is_none() && rough.end == UpdateEnd::StepsSpent && is_known(task) && is_far(0.0);
+        let rough = match is_slow {
+            true => {
+                let again = added(&rough, trusting.update(&task.roughly(), &rough.estimate, rows, clamped));
+                if again.misfit > STILL * rough.misfit && is_refuted(task, &again) {
+                    return again;
+                }
+                again
+            }
+            false => rough,
+        };
         let is_lost = matches!(rough.end, UpdateEnd::Lost(_));
         let begin = if is_lost { state } else { &rough.estimate };
         let update = added(&rough, trusting.update(task, begin, rows, clamped));
@@ -51,6 +63,17 @@ impl MovingWindow {
             false => update,
         }
     }
+}
+
+/// Whether it is known how large the errors of the readings are.
+fn is_known(task: &Task<'_>) -> bool {
+    task.noise != Noise::Unstated && task.loss == Loss::default()
+}
+
+/// Whether the search came to an end, or was cut off, where far more is left than a noise that is known: a least error there will not come down to it.
+pub(super) fn is_refuted(task: &Task<'_>, update: &Update) -> bool {
+    let is_end = !matches!(update.end, UpdateEnd::Converged | UpdateEnd::Lost(_));
+    is_end && is_known(task) && update.misfit > FAR_FROM_ANSWER * task.sigma
 }
 
 /// An update, with what was done for it before.

@@ -5,6 +5,7 @@
 //! trust begins on the whole window, and its update is the answer, with its bound and its test of fit. Where several states fit as well, all are
 //! given: the outputs do not tell them apart, as where they leave a mirror image.
 
+use super::ending::is_refuted;
 use super::nodes::Segments;
 use super::starts::{bounds, first_nodes, is_angle, range};
 use super::stiff_joints::{Found, seek};
@@ -26,6 +27,14 @@ struct Candidate {
     refused: usize,
     /// What it leaves is far more than noise explains.
     is_far: bool,
+}
+
+/// The states to which the segments of some rows led.
+struct Candidates {
+    /// Those that leave least first.
+    all: Vec<Candidate>,
+    /// Whether most starts came to what leaves least: then that is no false minimum, as far as starts can tell.
+    is_met_by_most: bool,
 }
 
 /// Segments and starts of multiple shooting.
@@ -72,6 +81,12 @@ const ENOUGH: f64 = 1e-8;
 const FAR: f64 = 0.05;
 const ENOUGH_FAR: f64 = 100.0;
 
+/// What leaves so many times as much as the best one is followed after all others.
+const FAR_FROM_BEST: f64 = 100.0;
+
+/// Two searches came to the same that leave the same but for this part.
+const ALIKE: f64 = 0.05;
+
 /// States that are no farther from each other than this part of the sizes are in one basin: a search by segments ends before it knows its end better.
 const SAME_BASIN: f64 = 1e-3;
 
@@ -96,6 +111,7 @@ impl MultipleShooting {
     ///
     /// Where nothing fits on the whole window, segments half as long may meet fewer false minima, and what fits on its first half is where the search on the whole
     /// begins next: over a shorter time there are fewer as well. What segments leave far more of than noise explains is one as a rule, and is followed to its end only after that.
+    /// Where most starts came to one end, by these segments and by those, and a noise that is known does not explain what it leaves, the model is wrong: nothing more is tried.
     pub fn solutions(
         &self,
         task: &Task<'_>,
@@ -120,15 +136,21 @@ impl MultipleShooting {
     ) -> Vec<Update> {
         let begin = Instant::now();
         let told = (rows, clamped);
+        let found = self.candidates(task, belief, rows, clamped);
         let (far, near): (Vec<Candidate>, Vec<Candidate>) =
-            self.candidates(task, belief, rows, clamped).into_iter().partition(|candidate| candidate.is_far);
+            found.all.into_iter().partition(|candidate| candidate.is_far);
         let mut updates = Vec::new();
         self.end_all(task, near, told, &mut updates);
         let is_answered = |updates: &[Update]| updates.iter().any(|update| is_answer(task, update));
+        let mut is_met_by_most = found.is_met_by_most;
         if let Some(finer) = finer.filter(|_| !is_answered(&updates) && !task.interrupted()) {
-            let mut near = finer.candidates(task, belief, rows, clamped);
-            near.retain(|candidate| !candidate.is_far);
-            self.end_all(task, near, told, &mut updates);
+            let mut found = finer.candidates(task, belief, rows, clamped);
+            found.all.retain(|candidate| !candidate.is_far);
+            self.end_all(task, found.all, told, &mut updates);
+            is_met_by_most &= found.is_met_by_most;
+        }
+        if is_met_by_most && !updates.is_empty() && updates.iter().all(|update| is_refuted(task, update)) {
+            return timed(best_first(task, updates), begin);
         }
         let half = rows.start..rows.start + rows.len() / 2 + 1;
         let is_long = half.len() * task.full.outputs.len() > FEWEST * task.full.states.len();
@@ -143,11 +165,7 @@ impl MultipleShooting {
             let belief = Candidate { state: belief.to_vec(), steps: 0, refused: 0, is_far: true };
             self.end_all(task, [far, vec![belief]].concat(), told, &mut updates);
         }
-        let mut updates = best_first(task, updates);
-        if let Some(update) = updates.first_mut() {
-            update.seconds = begin.elapsed().as_secs_f64();
-        }
-        updates
+        timed(best_first(task, updates), begin)
     }
 
     /// Follows candidates to their ends on the whole window: the first one at least, if nothing is known yet.
@@ -181,10 +199,10 @@ impl MultipleShooting {
         belief: &[f64],
         rows: &Range<usize>,
         clamped: &[usize],
-    ) -> Vec<Candidate> {
+    ) -> Candidates {
         let segments = self.segments(task, belief, rows, clamped);
         if segments.moving.is_empty() {
-            return Vec::new();
+            return Candidates { all: Vec::new(), is_met_by_most: false };
         }
         let bounds = [true, false].map(|are_signs_kept| bounds(task, are_signs_kept));
         let spreads = segments.spread.iter().map(|spread| (task.sigma / spread).powi(2));
@@ -204,17 +222,22 @@ impl MultipleShooting {
         let mut found: Vec<Found> = found.into_iter().flatten().collect();
         found.sort_by(|a, b| (a.misfit + a.gaps).total_cmp(&(b.misfit + b.gaps)));
         let compared = segments.measured.iter().flatten().filter(|read| !read.is_nan()).count() as f64;
+        let least = found.first().map_or(0.0, |best| best.misfit);
+        let alike = found.iter().filter(|other| other.misfit <= (1.0 + ALIKE) * least).count();
+        let is_met_by_most = alike >= 2 && 2 * alike >= all;
         let mut candidates: Vec<Candidate> = Vec::new();
         for found in found {
             let state = segments.state(&found.nodes, 0)[..task.estimated()].to_vec();
             if candidates.len() < MOST_ENDS
                 && !candidates.iter().any(|other| is_near(task, &other.state, &state, &[], SAME_BASIN))
             {
-                let is_far = found.misfit / compared > FAR.max(ENOUGH_FAR * enough);
+                let mean = found.misfit / compared;
+                let is_far = mean > FAR.max(ENOUGH_FAR * enough)
+                    || mean > FAR_FROM_BEST * enough.max(least / compared);
                 candidates.push(Candidate { state, steps: found.steps, refused: found.refused, is_far });
             }
         }
-        candidates
+        Candidates { all: candidates, is_met_by_most }
     }
 
     pub(super) fn segments<'t>(
@@ -278,6 +301,14 @@ impl MultipleShooting {
             base,
         }
     }
+}
+
+/// Updates whose first one took the time since then.
+fn timed(mut updates: Vec<Update>, begin: Instant) -> Vec<Update> {
+    if let Some(update) = updates.first_mut() {
+        update.seconds = begin.elapsed().as_secs_f64();
+    }
+    updates
 }
 
 /// Whether two states are one: within a part of the sizes, or some deviations; angles but for whole turns.

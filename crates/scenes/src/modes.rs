@@ -12,6 +12,7 @@ use super::simulation::Simulation;
 use palmistry_bodies::mechanics::moving::Ended;
 use palmistry_lang::UnknownKind;
 use palmistry_observe::{MotionRankFound, NoiseFrom, Objection, RecordReading, Signals, Update};
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -118,21 +119,18 @@ impl Experiment {
         let mut reached: Vec<Option<Vec<f64>>> = vec![None; modes.len()];
         let mut windows = Vec::new();
         for first in (0..times.len() - window).step_by(window) {
-            let mut estimates = Vec::new();
-            for (place, (name, mode)) in modes.iter().enumerate() {
+            let one = |(place, (name, mode)): (usize, &(String, Experiment))| {
                 let own = mode.window_of(first, window)?;
                 let sought = own.names().into_iter().map(str::to_owned).collect();
                 let (update, came_to) =
-                    own.search(mode.starts(&learned, reached[place].take()), interrupt)?;
-                reached[place] = came_to;
-                estimates.push(ModeEstimate {
-                    name: name.clone(),
-                    sought,
-                    update,
-                    rank: None,
-                    objection: None,
-                });
-            }
+                    own.search(mode.starts(&learned, reached[place].clone()), interrupt)?;
+                let name = name.clone();
+                Ok((ModeEstimate { name, sought, update, rank: None, objection: None }, came_to))
+            };
+            // each mode by itself: nothing of one is known to another in the same window
+            let found: Result<Vec<_>, SceneError> = modes.par_iter().enumerate().map(one).collect();
+            let (estimates, came_to): (Vec<ModeEstimate>, Vec<Option<Vec<f64>>>) = found?.into_iter().unzip();
+            reached = came_to;
             let fitting = (0..estimates.len()).filter(|place| estimates[*place].fits());
             let chosen = fitting.min_by(|a, b| estimates[*a].error().total_cmp(&estimates[*b].error()));
             for (place, came_to) in reached.iter_mut().enumerate() {
