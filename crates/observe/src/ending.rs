@@ -2,11 +2,13 @@
 
 use super::fit::Noise;
 use super::loss::Loss;
-use super::multiple_shooting::LAST_STEPS;
 use super::task::Task;
 use super::track::{Update, UpdateEnd};
 use super::{MovingWindow, WindowSearch};
 use std::ops::Range;
+
+/// Steps of the region of trust that are allowed at the end of a search.
+pub(super) const LAST_STEPS: u64 = 50;
 
 /// What leaves so many times as much as an answer, as the noise, or as this part of the largest reading, which a rough search may leave, is none.
 const FAR_FROM_ANSWER: f64 = 10.0;

@@ -5,7 +5,7 @@
 //! trust begins on the whole window, and its update is the answer, with its bound and its test of fit. Where several states fit as well, all are
 //! given: the outputs do not tell them apart, as where they leave a mirror image.
 
-use super::ending::is_refuted;
+use super::ending::{LAST_STEPS, is_refuted};
 use super::nodes::Segments;
 use super::starts::{bounds, first_nodes, is_angle, range};
 use super::stiff_joints::{Found, seek};
@@ -63,9 +63,6 @@ pub struct MultipleShooting {
     /// Segments and starts.
     pub shooting: Shooting,
 }
-
-/// Steps of the region of trust that are allowed at the end of a search.
-pub const LAST_STEPS: u64 = 50;
 
 /// The tolerance of the integration while nodes are sought, in parts of one, or of the smallest size of a state where that is less: a hundredth of the
 /// difference that ends the search.

@@ -6,7 +6,7 @@
 
 use super::MovingWindow;
 use super::ending::added;
-use super::multiple_shooting::LAST_STEPS;
+use super::ending::LAST_STEPS;
 use super::starts::range;
 use super::task::Task;
 use super::track::{Update, UpdateEnd};
