@@ -166,7 +166,7 @@ impl WholeRecord {
             let straight = self.low(start.clone(), rows, interrupt);
             let mut ends = vec![straight];
             if !ends[0].as_ref().is_some_and(|end| self.is_explained(end.cost, rows)) {
-                ends.push(self.by_parts(start.clone(), 0, interrupt));
+                ends.push(self.by_parts(start.clone(), interrupt));
             }
             best =
                 best.into_iter().chain(ends.into_iter().flatten()).min_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -194,8 +194,9 @@ impl WholeRecord {
         if self.stated { self.is_told(found) } else { self.is_exact(found) || self.alike(found) < ALIKE }
     }
 
-    /// Other series that explain readings with noise as large as these: where one explains them not, or its band is wide, the motion that was met first need not be the likeliest, nor the only one. A search that believes
-    /// little of the harmonics runs far along what the readings hardly tell; so each begins with few harmonics and much belief, the likeliest go on.
+    /// Other series, and splines, that explain readings with noise as large as these: where one explains them not, or its band is wide, the motion that was met first need not be the likeliest, nor the only one. A search
+    /// that believes little of the harmonics runs far along what the readings hardly tell; so each begins with few harmonics and much belief, the likeliest go on. Where few harmonics explain nothing there may be
+    /// kinks: the best of such ends go on with more harmonics and as splines.
     fn elsewhere(&self, starts: &[Unknowns], found: &Found, interrupt: &AtomicBool) -> Vec<Found> {
         if !self.is_wide(found) && self.is_noise(found) {
             return Vec::new();
@@ -203,24 +204,21 @@ impl WholeRecord {
         let rows = self.times.len();
         let mut splines: Vec<Found> = Vec::new();
         let ends = self.begun_by_turning(interrupt);
-        let begins = std::iter::once(&found.unknowns).chain(starts).chain(ends.iter().map(|end| &end.x));
+        let own = Some(&found.unknowns).filter(|_| !found.is_spline());
+        let begins = own.into_iter().chain(starts).chain(ends.iter().map(|end| &end.x));
         let mut all: Vec<Found> = begins.flat_map(|begin| self.believed(begin, interrupt)).collect();
         for end in ends.iter().filter(|end| !self.is_explained(end.cost, rows)).take(UNEXPLAINED) {
             all.extend(self.series(&end.x, interrupt));
-            let round = end.x.support.order();
-            let few = self.at_minimum(end, &convex_weights(self.size(), round));
+            let few = self.at_minimum(end, &convex_weights(self.size(), end.x.support.order()));
             splines.extend(few.into_iter().flat_map(|few| self.splines(&few, false, interrupt)));
         }
-        all.retain(|end| self.is_explained(end.shape.chi_square, rows));
-        splines.retain(|end| self.is_explained(end.shape.chi_square, rows));
-        let mut ends = all;
-        ends.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-        let mut ends = different(ends);
-        ends.truncate(KEPT);
-        let series = ends.iter().filter_map(|end| self.series_about(&end.unknowns, interrupt));
-        let mut all = different(series.collect());
-        all.append(&mut splines);
-        all
+        let is_explained = |end: &Found| self.is_explained(end.shape.chi_square, rows);
+        all.retain(is_explained);
+        splines.retain(is_explained);
+        all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        let ends = different(all).into_iter().take(KEPT);
+        let series: Vec<Found> = ends.filter_map(|end| self.series_about(&end.unknowns, interrupt)).collect();
+        [different(series), splines].concat()
     }
 
     /// Whether a shape is so uncertain somewhere where it was touched that its errors are not small.
@@ -238,12 +236,12 @@ impl WholeRecord {
         self.descend(expanded(&start, order), &convex_weights(self.size(), order), rows, interrupt)
     }
 
-    /// The first parts of the record one after the other, from one of [`PARTS`] on.
-    fn by_parts(&self, start: Unknowns, first: usize, interrupt: &AtomicBool) -> Option<Best> {
+    /// The parts of the record one after the other.
+    fn by_parts(&self, start: Unknowns, interrupt: &AtomicBool) -> Option<Best> {
         let mut end = None;
         let mut x = start;
-        for part in &PARTS[first..] {
-            let best = self.low(x, self.part(*part), interrupt)?;
+        for part in self.parts() {
+            let best = self.low(x, part, interrupt)?;
             x = best.x.clone();
             end = Some(best);
         }
