@@ -38,6 +38,11 @@ fn magnification(shape: &ShapeEstimate, counts: impl Fn(f64) -> bool) -> f64 {
     [5.0, 2.0].into_iter().map(|k| k * power).find(|factor| *factor <= most).unwrap_or(power)
 }
 
+/// How far the edge of a band is drawn from its outline, in m: what is not known at all, as in a gap of half a turn, does not fill the page, and the outline within is where it is.
+fn drawn(band: f64, mean: f64) -> f64 {
+    band.min(0.3 * mean.abs())
+}
+
 /// The outline in the frame of the body, with the band by how many times it is drawn wider.
 pub(super) fn outline_picture(
     found: &Reconstruction,
@@ -49,9 +54,8 @@ pub(super) fn outline_picture(
     let band = |angle: f64| shape.band(&found.coverage, angle);
     let place = |i: usize, off: f64| {
         let (angle, [x, y]) = (angle(i), shape.support.point(angle(i)));
-        // what is not known at all does not fill the page
-        let off = (off * band(angle) * if covered(angle) { magnified } else { 1.0 })
-            .clamp(-0.3 * shape.support.mean(), 0.3 * shape.support.mean());
+        let wider = if covered(angle) { magnified } else { 1.0 };
+        let off = off * drawn(band(angle) * wider, shape.support.mean());
         [x + off * angle.cos(), y + off * angle.sin()]
     };
     let sides: Vec<[f64; 2]> = truth.map(|shape| shape.outline(NORMALS)).unwrap_or_default();
@@ -161,4 +165,17 @@ pub(super) fn band_picture(found: &Reconstruction, shape: &ShapeEstimate, truth:
         }
         Ok(())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::drawn;
+
+    #[test]
+    fn a_band_without_an_end_is_drawn_about_its_outline() {
+        assert_eq!(drawn(0.1, 2.0), 0.1);
+        assert_eq!(drawn(f64::INFINITY, 2.0), 0.6);
+        // an outline is where its band has no width
+        assert_eq!(0.0 * drawn(f64::INFINITY, 2.0), 0.0);
+    }
 }
