@@ -51,7 +51,7 @@ pub(super) fn shape_section(observed: &Observed<'_>) -> Markup {
                 @if truth.is_some() { " over the true one (grey)" }
                 ", with its band"
                 @if magnified > 1.0 { " drawn " b { (format!("{magnified:.0}")) " times as wide as it is" } }
-                "; pale where no normal was touched: there convexity alone says how wide it is. Right: the band over the angle of the normal"
+                "; pale where no normal was touched: there convexity alone says how wide it is, and no more than 0.3 of the mean radius is drawn. Right: the band over the angle of the normal"
                 @if truth.is_some() { ", and the error of the support radius in it" }
                 "."
             }
