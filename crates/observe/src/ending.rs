@@ -37,15 +37,17 @@ impl MovingWindow {
             let most = FAR_FROM_ANSWER * left.max(task.sigma).max(ROUGHLY * read);
             rough.misfit.is_nan() || rough.misfit > most
         };
-        if answer.map_or_else(|| is_refuted(task, &rough) && is_far(0.0), is_far) {
+        // a least error that is far above a noise that is known will not come down to it
+        let is_least = matches!(rough.end, UpdateEnd::DoesNotFit | UpdateEnd::Stuck);
+        if answer.map_or_else(|| is_least && is_known(task) && is_far(0.0), is_far) {
             return rough;
         }
-        // what still comes down after all of its steps goes on; what does not will not come down to a noise that is known
+        // a search that was cut off goes on, unless as many steps again lead nowhere
         let is_slow = answer.is_none() && rough.end == UpdateEnd::StepsSpent && is_known(task) && is_far(0.0);
         let rough = match is_slow {
             true => {
                 let again = added(&rough, trusting.update(&task.roughly(), &rough.estimate, rows, clamped));
-                if again.misfit > STILL * rough.misfit && is_refuted(task, &again) {
+                if again.misfit > STILL * rough.misfit {
                     return again;
                 }
                 again
@@ -72,7 +74,7 @@ fn is_known(task: &Task<'_>) -> bool {
     task.noise != Noise::Unstated && task.loss == Loss::default()
 }
 
-/// Whether the search came to an end, or was cut off, where far more is left than a noise that is known: a least error there will not come down to it.
+/// Whether far more is left than a noise that is known where the search ended or could not get on.
 pub(super) fn is_refuted(task: &Task<'_>, update: &Update) -> bool {
     let is_end = !matches!(update.end, UpdateEnd::Converged | UpdateEnd::Lost(_));
     is_end && is_known(task) && update.misfit > FAR_FROM_ANSWER * task.sigma

@@ -5,8 +5,7 @@
 //! searches have come to one least error that does not, the model has no other that they would find, and they stop.
 
 use super::MovingWindow;
-use super::ending::LAST_STEPS;
-use super::ending::added;
+use super::ending::{LAST_STEPS, added};
 use super::starts::range;
 use super::task::Task;
 use super::track::{Update, UpdateEnd};

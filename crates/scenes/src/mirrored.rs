@@ -91,7 +91,14 @@ impl Experiment {
                 )
             })
         };
-        mirrors.iter().filter_map(in_words).take(MOST).collect()
+        let mut images: Vec<String> = mirrors.iter().filter_map(in_words).collect();
+        // three unknowns that exchange their values have five
+        let more = images.len().saturating_sub(MOST);
+        images.truncate(MOST);
+        if more > 0 {
+            images.push(format!("and {more} more such images, which are not named"));
+        }
+        images
     }
 
     /// Whether a value is one that the scene allows.

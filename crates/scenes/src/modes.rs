@@ -128,8 +128,10 @@ impl Experiment {
                 Ok((ModeEstimate { name, sought, update, rank: None, objection: None }, came_to))
             };
             // each mode by itself: nothing of one is known to another in the same window
-            let found: Result<Vec<_>, SceneError> = modes.par_iter().enumerate().map(one).collect();
-            let (estimates, came_to): (Vec<ModeEstimate>, Vec<Option<Vec<f64>>>) = found?.into_iter().unzip();
+            let found: Vec<Result<_, SceneError>> = modes.par_iter().enumerate().map(one).collect();
+            // of several faults the first mode's, on any number of threads
+            let found: Vec<_> = found.into_iter().collect::<Result<_, _>>()?;
+            let (estimates, came_to): (Vec<ModeEstimate>, Vec<Option<Vec<f64>>>) = found.into_iter().unzip();
             reached = came_to;
             let fitting = (0..estimates.len()).filter(|place| estimates[*place].fits());
             let chosen = fitting.min_by(|a, b| estimates[*a].error().total_cmp(&estimates[*b].error()));

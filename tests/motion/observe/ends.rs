@@ -239,6 +239,22 @@ fn an_image_that_exchanges_unknowns_is_named() {
     }
 }
 
+/// Three compartments that are read as a sum have five other orders: four are named, and of the fifth it is said that there is one.
+#[test]
+fn images_that_are_not_named_are_counted() {
+    let folder = folder();
+    let model = "system \"Three compartments\" state a, b, c param k, l, m unknown drift f a' = -k*a b' = -l*b c' = -m*c output a + b + c \
+                 sample a in [0, 4] b in [0, 4] c in [0, 4] k in [1/10, 9] l in [1/10, 9] m in [1/100, 3]";
+    write(&folder, "sum.proof", model);
+    let scene = "title = \"A sum\"\nmodel = \"sum.proof\"\nduration = 6\nsamples = 601\n[start]\na = 2\nb = 1\nc = 3\nk = 5\nl = 1\nm = 0.1\n[sensor]\nnoise = 1e-6\n\
+                 [observer]\nmethods = [\"trust-region\"]\nestimate = [\"a\", \"b\", \"c\", \"k\", \"l\", \"m\"]\nguess_off = 0.02\nwindow = 600\nsteps = 50\n";
+    let (_, found) = observe(&write(&folder, "sum.toml", scene), &[]);
+    assert!(first(&found).1, "{found}");
+    assert_eq!(images(&found).len(), 4, "{found}");
+    let remarks = found["observers"][0]["remarks"].to_string();
+    assert!(remarks.contains("and 1 more such images"), "{remarks}");
+}
+
 /// What is said of other states that explain the measurements.
 fn images(found: &Value) -> Vec<String> {
     let remarks = found["observers"][0]["remarks"].as_array().unwrap();

@@ -32,7 +32,7 @@ pub(super) fn fit_in_words(update: &Update) -> String {
     let Some(fit) = &update.fit else { return String::new() };
     match update.end {
         // a search that has not ended is tested by nothing, but what it leaves of a noise that is known is of use
-        UpdateEnd::StepsSpent if !fit.fits && fit.from == NoiseFrom::Stated => {
+        UpdateEnd::StepsSpent if !fit.fits && fit.degrees > 0 && fit.from == NoiseFrom::Stated => {
             format!(", does not fit where it stands: {}", unexplained(update, fit))
         }
         UpdateEnd::Blind { .. } | UpdateEnd::Lost(_) | UpdateEnd::StepsSpent => String::new(),

@@ -18,6 +18,8 @@ pub(super) struct Found {
     pub misfit: f64,
     /// The logarithm of the probability of the readings, but for a constant of the record.
     pub evidence: f64,
+    /// The radius of gyration, [`CERTAIN`] deviations taken off where it was sought, in m.
+    pub least_gyration: f64,
     /// Whether its search has come to its end, and errors as large as its own are linear, where it is known how large they are.
     pub is_sure: bool,
 }
@@ -44,14 +46,14 @@ impl Found {
         is_between && self.holds_its_mass()
     }
 
-    /// Whether the radius of gyration fits into the outline, [`CERTAIN`] deviations added to its perimeter.
+    /// Whether the radius of gyration fits into the outline, [`CERTAIN`] deviations taken off it and added to the perimeter.
     ///
     /// No two points of a convex outline are farther apart than half its perimeter, by H. Jung's theorem (1901) it lies in a circle of `1/sqrt(3)` of that, and mass within a circle
     /// has no larger radius of gyration. What was not touched is in the deviation.
     fn holds_its_mass(&self) -> bool {
         let perimeter = self.shape.perimeter();
         let most = (perimeter.value + CERTAIN * perimeter.deviation) / (2.0 * 3f64.sqrt());
-        self.unknowns.gyration <= most
+        self.least_gyration <= most
     }
 
     /// Whether its outline is a spline, and not a series.
@@ -222,7 +224,10 @@ impl WholeRecord {
             widened: 1.0,
         };
         let misfit = self.misfit(chi_square, self.times.len());
-        Found { unknowns, covariance, shape, motion, misfit, evidence, is_sure: true }
+        // its logarithm is what is sought
+        let off = self.place_of_gyration().map_or(0.0, |place| covariance[(place, place)].max(0.0).sqrt());
+        let least_gyration = unknowns.gyration * (-CERTAIN * off).exp();
+        Found { unknowns, covariance, shape, motion, misfit, evidence, least_gyration, is_sure: true }
     }
 
     /// The length by which coefficients are measured beforehand, in m: twice the mean of what was read, from which a body that touches both palms cannot be far.

@@ -76,6 +76,12 @@ impl WholeRecord {
         starts
     }
 
+    /// The fastest rate of a grid for a body of a radius, in rad/s, also where the rate is known.
+    pub fn fastest(&self, radius: f64) -> f64 {
+        let palms = self.palms_at(self.times[0]).rates;
+        FASTEST * (self.gravity.abs() / radius).sqrt() + palms[0].abs().max(palms[1].abs())
+    }
+
     /// Discs that turn at rates on a grid, where nobody knows anything: a disc between palms touches both at `R/tan(a/2)`, `a` being the angle between them, and bodies
     /// that gravity turns have rates of the size of `sqrt(g/R)`.
     pub fn discs(&self) -> Vec<Unknowns> {
@@ -85,9 +91,7 @@ impl WholeRecord {
             half.tan().abs() * f64::midpoint(self.contacts[0][i], self.contacts[1][i])
         });
         let radius = radii.sum::<f64>() / self.times.len() as f64;
-        let palms =
-            self.palms_at(self.times[0]).rates.into_iter().fold(0.0, |most: f64, rate| most.max(rate.abs()));
-        let most = FASTEST * (self.gravity.abs() / radius).sqrt() + palms;
+        let most = self.fastest(radius);
         if !(radius > 0.0 && most.is_finite()) {
             return Vec::new();
         }
