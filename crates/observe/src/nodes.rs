@@ -82,6 +82,13 @@ impl Segments<'_> {
         state
     }
 
+    /// Where a segment ends that begins at a state; none where it cannot be followed.
+    pub fn end_of(&self, place: usize, state: &[f64]) -> Option<Vec<f64>> {
+        let times = &self.times[self.rows[place].clone()];
+        let end = self.flow.follow(state, &[], times, Order::Value).ok()?.pop()?;
+        end.state.iter().all(|value| value.is_finite()).then_some(end.state)
+    }
+
     fn segment(&self, nodes: &Nodes, place: usize) -> Result<Segment, Lost> {
         let rows = self.rows[place].clone();
         let is_last = place + 1 == self.rows.len();

@@ -48,7 +48,8 @@ pub(super) fn bounds(task: &Task<'_>, are_signs_kept: bool) -> Bounds {
     Bounds { first, later }
 }
 
-/// Where a start begins: from the guess, or from a state of the sample box; what is read is taken as it is read.
+/// Where a start begins: from the guess, or from a state of the sample box; what is read is taken as it is read. What is not read is the same at all
+/// nodes, or every second time for each kind of bounds as the model moves it from node to node: an angle that turns on, or a speed that falls, is far from where it began.
 pub(super) fn first_nodes(
     task: &Task<'_>,
     segments: &Segments<'_>,
@@ -56,6 +57,7 @@ pub(super) fn first_nodes(
     (belief, rows, clamped): (&[f64], &Range<usize>, &[usize]),
     start: usize,
 ) -> Nodes {
+    let is_followed = start / 2 % 2 == 1;
     let mut random = ChaCha8Rng::seed_from_u64(start as u64);
     let mut state = task.full_state(belief, rows.start);
     for (place, value) in state.iter_mut().enumerate() {
@@ -68,18 +70,24 @@ pub(super) fn first_nodes(
             *value = low + part * (high - low);
         }
     }
-    let node = |(node, segment): (usize, &Range<usize>)| {
-        let row = rows.start + segment.start;
-        let value = |place: &usize| match task.full.column_of(*place) {
-            Some(column) if !task.signals.column(column)[row].is_nan() => task.signals.column(column)[row],
-            _ => state[*place],
-        };
-        let values = segments.moving.iter().map(|place| bounds.within(node, *place, value(place)));
-        DVector::from_iterator(segments.moving.len(), values)
-    };
-    let constant = segments.constant.iter().map(|place| bounds.within(0, *place, state[*place]));
-    Nodes {
-        moving: segments.rows.iter().enumerate().map(node).collect(),
-        constant: DVector::from_iterator(segments.constant.len(), constant),
+    let constants = segments.constant.iter().map(|place| bounds.within(0, *place, state[*place]));
+    let constant = DVector::from_iterator(segments.constant.len(), constants);
+    for (place, value) in segments.constant.iter().zip(constant.iter()) {
+        state[*place] = *value;
     }
+    let mut moving = Vec::with_capacity(segments.rows.len());
+    for (node, segment) in segments.rows.iter().enumerate() {
+        let row = rows.start + segment.start;
+        let mut here = state.clone();
+        for place in &segments.moving {
+            let read = task.full.column_of(*place).map(|column| task.signals.column(column)[row]);
+            let value = read.filter(|read| !read.is_nan()).unwrap_or(state[*place]);
+            here[*place] = bounds.within(node, *place, value);
+        }
+        moving.push(DVector::from_iterator(segments.moving.len(), segments.moving.iter().map(|i| here[*i])));
+        if is_followed && let Some(end) = segments.end_of(node, &here) {
+            state = end;
+        }
+    }
+    Nodes { moving, constant }
 }
