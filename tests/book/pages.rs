@@ -24,8 +24,10 @@ pub struct Findings {
 pub fn pages() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut found = vec![root.join("README.md")];
-    let folder = std::fs::read_dir(root.join("book/src")).expect("the book");
-    let mut chapters: Vec<PathBuf> = folder.map(|entry| entry.expect("an entry").path()).collect();
+    let folders =
+        ["book/src", "book/src/commands"].map(|name| std::fs::read_dir(root.join(name)).expect("the book"));
+    let mut chapters: Vec<PathBuf> =
+        folders.into_iter().flatten().map(|entry| entry.expect("an entry").path()).collect();
     chapters.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
     chapters.sort();
     found.extend(chapters);
