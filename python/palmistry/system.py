@@ -108,7 +108,7 @@ class System:
         """Reads a system from a text; what it imports is looked for in `folder`. Raises ReadError, with the place.
 
         >>> palmistry.System.parse('system "A decay" state x drift f x\\' = -x output x')
-        <system 'A decay': 1 states, 1 outputs, 0 claims>
+        <system 'A decay': 1 state, 1 output, 0 claims>
         """
         return System(_native.System.parse(text, name, os.fspath(folder)))
 
@@ -555,7 +555,8 @@ class System:
         return _asked(Certificate, lambda: self._native.certify(*asked))
 
     def __repr__(self) -> str:
-        return f"<system '{self.title}': {len(self.states)} states, {len(self.outputs)} outputs, {len(self.claims)} claims>"
+        counts = ((len(of), noun) for of, noun in ((self.states, "state"), (self.outputs, "output"), (self.claims, "claim")))
+        return f"<system '{self.title}': {', '.join(f'{count} {noun}' + 's' * (count != 1) for count, noun in counts)}>"
 
 
 def _arrays(states: Any, names: list[str]) -> list[Any]:

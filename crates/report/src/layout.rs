@@ -87,8 +87,9 @@ fn add(first: &str, hang: usize, text: &str, out: &mut String) {
 }
 
 /// A number of things: `1 output`, `2 outputs`.
-pub(crate) fn counted(count: usize, noun: &str) -> String {
-    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+pub(crate) fn counted<N: std::fmt::Display + PartialEq + From<u8>>(count: N, noun: &str) -> String {
+    let end = if count == N::from(1) { "" } else { "s" };
+    format!("{count} {noun}{end}")
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Certificates on regions, as JSON and as text.
 
+use crate::layout::counted;
 use crate::names::{by_default_text, fields_json, fields_text, ranges_json};
 use dashu::rational::RBig;
 use palmistry_math::number::rational_from_f64;
@@ -104,7 +105,7 @@ pub fn percent(fraction: f64) -> String {
 
 /// An answer as text.
 pub fn region_text(answer: &RegionAnswer) -> String {
-    let mut out = format!("{}: {} states", answer.title, answer.dimension);
+    let mut out = format!("{}: {}", answer.title, counted(answer.dimension, "state"));
     match answer.order {
         Some(order) => {
             let _ = writeln!(out, ", Lie derivatives up to order {order} ({})", fields_text(&answer.fields));
@@ -151,12 +152,13 @@ pub fn region_text(answer: &RegionAnswer) -> String {
         let chosen = answer.ranges.iter().filter(|(_, matters)| *matters == matter);
         chosen.map(|(c, _)| c.name.as_str()).collect()
     };
-    let _ = writeln!(out, "{} free coordinates: {}", names(true).len(), names(true).join(", "));
+    let _ = writeln!(out, "{}: {}", counted(names(true).len(), "free coordinate"), names(true).join(", "));
     if !names(false).is_empty() {
         let _ = writeln!(out, "  nothing depends on {}", names(false).join(", "));
     }
     let all = if answer.all_minors { "all" } else { "more than" };
-    let _ = writeln!(out, "{} minors, chosen from {all} {}:", answer.minors.len(), answer.candidates);
+    let _ =
+        writeln!(out, "{}, chosen from {all} {}:", counted(answer.minors.len(), "minor"), answer.candidates);
     for minor in &answer.minors {
         let _ = writeln!(out, "  {}", minor.rows.join(", "));
         for factor in &minor.factors {

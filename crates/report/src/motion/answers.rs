@@ -411,9 +411,10 @@ pub(super) fn state_lines(
     known: Beside<'_>,
 ) {
     let truth = observed.experiment.truth_at(time);
-    for (i, name) in names.iter().enumerate() {
-        let name = state_name(observed, name);
-        let _ = write!(text, "    {name:<8} {:>15.9}", recovered[i]);
+    let named: Vec<String> = names.iter().map(|name| state_name(observed, name)).collect();
+    let width = named.iter().map(|name| name.chars().count()).fold(8, usize::max);
+    for (i, name) in named.iter().enumerate() {
+        let _ = write!(text, "    {name:<width$} {:>15.9}", recovered[i]);
         if let Some(bound) = known.bounds.get(i) {
             let _ = write!(text, "{} ± {bound:.1e}", known.worth);
         }

@@ -2,6 +2,7 @@
 
 use super::answers::end_name;
 use super::fit::finite;
+use crate::layout::counted;
 use palmistry_observe::{MotionRankFound, Objection, Update};
 use palmistry_scenes::{Experiment, ModeEstimate, ModeWindow};
 use serde_json::{Map, Value, json};
@@ -76,7 +77,8 @@ pub fn modes_json(experiment: &Experiment, windows: &[ModeWindow]) -> Value {
 pub fn modes_text(experiment: &Experiment, windows: &[ModeWindow]) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "{}", experiment.scene.title);
-    let _ = writeln!(text, "{} samples, {} windows", experiment.signals.times().len(), windows.len());
+    let _ =
+        writeln!(text, "{} samples, {}", experiment.signals.times().len(), counted(windows.len(), "window"));
     for window in windows {
         let _ = write!(text, "  {:.3} s to {:.3} s: ", window.from, window.to);
         let Some(estimate) = window.chosen.map(|place| &window.estimates[place]) else {

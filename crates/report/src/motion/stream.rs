@@ -1,5 +1,6 @@
 //! What observers make of a stream: a line of JSON or some lines of text a window, and the end.
 
+use crate::layout::counted;
 use crate::motion::answers::{
     Beside, Observed, end_name, fault_lines, origin, origin_in_words, state_lines, states, update_json,
 };
@@ -114,7 +115,12 @@ pub fn stream_text(report: &WindowReport<'_>, is_timed: bool) -> String {
 
 /// The end of a stream as text.
 pub fn stream_end_text(end: &StreamEnd) -> String {
-    let mut text = format!("{} windows of {} rows; faulty rows: {}", end.windows, end.rows, end.faults);
+    let mut text = format!(
+        "{} of {}; faulty rows: {}",
+        counted(end.windows, "window"),
+        counted(end.rows, "row"),
+        end.faults
+    );
     for tally in end.observers.iter().filter(|tally| tally.updates > 0) {
         let _ = write!(text, "; {}: {} of {} updates fit", tally.method.name(), tally.fit, tally.updates);
         if tally.spent > 0 {

@@ -189,14 +189,15 @@ fn sampled_text(title: &str, report: &SweepReport, out: &mut String) {
     if report.disagreements > 0 {
         item(
             &format!(
-                "at {} states the singular values alone suggest another rank: {:?}",
-                report.disagreements, report.computed_histogram
+                "at {} the singular values alone suggest another rank: {:?}",
+                counted(report.disagreements, "state"),
+                report.computed_histogram
             ),
             out,
         );
     }
     for (pole, count) in &report.poles {
-        item(&format!("{count} states left out, singular there: {pole}"), out);
+        item(&format!("{} left out, singular there: {pole}", counted(*count, "state")), out);
     }
     if report.interrupted {
         item("interrupted: these are the states done until then", out);
@@ -208,8 +209,8 @@ fn directions_text(report: &SweepReport, out: &mut String) {
     for direction in &report.unseen {
         item(
             &format!(
-                "at {} states unobservable: a direction in {}; for one, {}",
-                direction.count,
+                "at {} unobservable: a direction in {}; for one, {}",
+                counted(direction.count, "state"),
                 direction.states.join(", "),
                 direction.example
             ),

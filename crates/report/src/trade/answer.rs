@@ -1,5 +1,6 @@
 //! Speed against accuracy, as JSON and as text; the picture is in `trade_plot`.
 
+use crate::layout::counted;
 use crate::names::{by_default_text, fields_json, fields_text, ranges_json};
 use palmistry_workbench::tradeoff::{
     Combination, CombinationLeftOut, CorrectDigits, DIGITS_TOLERANCE, DerivativeResult, TIME_TOLERANCE, Trade,
@@ -157,7 +158,7 @@ pub fn trade_text(trade: &Trade) -> String {
         let _ = writeln!(out, "words: {}", trade.words.join(", "));
     }
     if trade.without_truth > 0 {
-        let _ = writeln!(out, "{} states left out: nothing is certain there", trade.without_truth);
+        let _ = writeln!(out, "{} left out: nothing is certain there", counted(trade.without_truth, "state"));
     }
     let _ = writeln!(
         out,
