@@ -344,8 +344,8 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
                 UpdateEnd::DoesNotFit => end_name(&UpdateEnd::Converged),
                 end => end_name(end),
             };
-            let (from, steps, fit) = (update.from, update.steps, fit_in_words(update));
-            let _ = writeln!(text, "  from {from:.3} s: {standing} after {steps} steps{fit}{time}");
+            let (from, steps, fit) = (update.from, counted(update.steps, "step"), fit_in_words(update));
+            let _ = writeln!(text, "  from {from:.3} s: {standing} after {steps}{fit}{time}");
             let known = Beside::of(update);
             state_lines(&mut text, observed, &names, update.from, &update.estimate, known);
             for line in suspects_in_words(update) {

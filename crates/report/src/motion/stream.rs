@@ -89,9 +89,9 @@ pub fn stream_text(report: &WindowReport<'_>, is_timed: bool) -> String {
             let standing = match is_other {
                 true => "another state fits as well".to_owned(),
                 false => format!(
-                    "{} after {} steps{}{time}",
+                    "{} after {}{}{time}",
                     end_name(&update.end).trim_end_matches(", but does not fit"),
-                    update.steps,
+                    counted(update.steps, "step"),
                     fit_in_words(update)
                 ),
             };
