@@ -48,8 +48,9 @@ pub(super) fn bounds(task: &Task<'_>, are_signs_kept: bool) -> Bounds {
     Bounds { first, later }
 }
 
-/// Where a start begins: from the guess, or from a state of the sample box; what is read is taken as it is read. What is not read is the same at all
-/// nodes, or every second time for each kind of bounds as the model moves it from node to node: an angle that turns on, or a speed that falls, is far from where it began.
+/// Where a start begins: from the guess, or from a state of the sample box. A state that is measured begins at each node as it is measured there. Any other
+/// begins with one value at all nodes or, in every other pair of starts, where the model takes it from node to node: an angle that turns on is soon far from
+/// where it began, and a search that begins far from a motion ends at a false minimum.
 pub(super) fn first_nodes(
     task: &Task<'_>,
     segments: &Segments<'_>,
