@@ -4,7 +4,7 @@ use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
 use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
-use palmistry::checker::{Checking, Effort, LARGEST_FILE, ProofSources, VerdictFile};
+use palmistry::checker::{Checking, Effort, Finding, LARGEST_FILE, ProofSources, Unchecked, VerdictFile};
 use palmistry::file::read_text;
 use palmistry::foreign::shown_path;
 use palmistry::report::{has_failed, recheck_json, recheck_text};
@@ -47,6 +47,20 @@ impl Recheck {
         let checked = file.check(with, &|| bar.inc(1));
         bar.finish_and_clear();
         begin_to_tell();
+        // a folder that is not theirs would leave every verdict unchecked, and none in doubt
+        let missing: Option<Vec<&String>> = checked
+            .iter()
+            .map(|verdict| match &verdict.finding {
+                Finding::NotChecked(Unchecked::NoProofFile(why)) => Some(why),
+                _ => None,
+            })
+            .collect();
+        if let Some(why) = missing.as_deref().and_then(<[_]>::first) {
+            return Err(Unusable::report(
+                format!("{}: no proof file that it names can be read: {why}", shown_path(&self.file)),
+                "--proofs names the folder from which the names of proof files are read",
+            ));
+        }
         let failed = has_failed(&checked);
         let object = recheck_json(&file, &checked, interrupted());
         let in_words = || recheck_text(&checked);

@@ -91,6 +91,53 @@ fn a_mirror_image_is_named() {
     );
 }
 
+/// Half of the starts begin along the model's motion. Here it has none from most of the box, since what is not measured is infinite within a second from
+/// above one, and a window may be a single segment, and cells may be empty: the truth is found all the same.
+#[test]
+fn starts_from_which_there_is_no_motion_harm_nothing() {
+    let folder = folder();
+    write(
+        &folder,
+        "escape.proof",
+        "system \"A growth that is measured through a lag\" state x, y param k unknown drift f x' = y - x y' = k*y^2 output x \
+         sample x in [-2, 2] y in [-2, 4] k in [1/2, 2]",
+    );
+    let scene = "title = \"Escape\"\nmodel = \"escape.proof\"\nduration = 4\nsamples = 81\n[start]\nx = 0.7\ny = -1.1\nk = 1.3\n\
+                 [sensor]\nnoise = 0.001\n[observer]\nmethods = [\"multiple-shooting\"]\nestimate = [\"x\", \"y\", \"k\"]\n";
+    let mut found = Vec::new();
+    for shooting in ["", "shooting = { segments = 1 }\n", "shooting = { starts = 4 }\n"] {
+        let file = write(&folder, "escape.toml", format!("{scene}{shooting}"));
+        let (output, answer) = observe(&file, &[]);
+        assert_eq!(output.status.code(), Some(0), "{shooting}{answer}");
+        found.push(answer);
+    }
+    // most cells are empty, those of the nodes among them
+    let (output, _) = observe(
+        &folder.path().join("escape.toml"),
+        &["--record", folder.path().join("all.csv").to_str().unwrap()],
+    );
+    assert_eq!(output.status.code(), Some(0));
+    let all = std::fs::read_to_string(folder.path().join("all.csv")).unwrap();
+    let sparse = all.lines().enumerate().map(|(row, line)| match (row, line.split_once(',')) {
+        (0, _) | (_, None) => line.to_owned(),
+        (_, Some((time, rest))) if row % 4 != 2 => {
+            format!("{time},{}", ",".repeat(rest.matches(',').count()))
+        }
+        _ => line.to_owned(),
+    });
+    let sparse = write(&folder, "sparse.csv", sparse.collect::<Vec<_>>().join("\n") + "\n");
+    let (output, answer) = observe(&folder.path().join("escape.toml"), &["--data", sparse.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{answer}");
+    found.push(answer);
+    for answer in found {
+        let states = &answer["observers"][0]["updates"][0]["states"];
+        for (name, truth) in [("x", 0.7), ("y", -1.1), ("k", 1.3)] {
+            let [value, bound] = ["recovered", "bound"].map(|of| states[name][of].as_f64().unwrap());
+            assert!((value - truth).abs() <= 5.0 * bound, "{name}: {value} of {truth}, {bound}");
+        }
+    }
+}
+
 /// What was recorded gives what was simulated, to the last digit, whatever the first guess; and no page speaks of palms.
 #[test]
 fn a_recording_of_any_system_gives_the_same_answer() {

@@ -187,3 +187,38 @@ fn a_circle_of_imports_is_named() {
     let said = message(&output);
     assert!(said.contains("imports itself: a.proof -> b.proof -> c.proof -> a.proof"), "{said}");
 }
+
+/// Verdicts of which no proof file is where `recheck` looks are no verdicts without doubt. Of two files one may be gone, which is said of its verdicts; and of no verdicts none is in doubt.
+#[test]
+fn verdicts_without_their_proof_files_are_refused() {
+    let folder = folder();
+    let text = "system \"s\" state x drift f x' = -x output x\nclaim 1: (x + 1)^2 = x^2 + 2*x + 1\n";
+    for name in ["a.proof", "b.proof"] {
+        write(&folder, name, text);
+    }
+    let verdicts = folder.path().join("verdicts.json");
+    let run = |arguments: &[&str]| {
+        let output = finish(program(arguments).current_dir(folder.path()));
+        (output.status.code(), json(&output))
+    };
+    let name = verdicts.to_str().unwrap();
+    assert_eq!(run(&["prove", "a.proof", "b.proof", "--verdicts", name, "--json"]).0, Some(0));
+    assert_eq!(run(&["recheck", name, "--json"]).0, Some(0));
+    let (status, found) = run(&["recheck", name, "--proofs", "elsewhere", "--json"]);
+    let error = &found["error"];
+    assert_eq!(status, Some(2), "{found}");
+    assert!(error["message"].as_str().is_some_and(|message| message.contains("no proof file")), "{found}");
+    assert!(error["help"].as_str().is_some_and(|help| help.contains("--proofs")), "{found}");
+    std::fs::remove_file(folder.path().join("b.proof")).unwrap();
+    let (status, found) = run(&["recheck", name, "--json"]);
+    assert_eq!(
+        (status, &found["confirmed"], &found["not_checked"]),
+        (Some(0), &1.into(), &1.into()),
+        "{found}"
+    );
+    let mut none: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(&verdicts).unwrap()).unwrap();
+    none["verdicts"] = serde_json::Value::Array(Vec::new());
+    write(&folder, "verdicts.json", none.to_string());
+    assert_eq!(run(&["recheck", name, "--json"]).0, Some(0));
+}
