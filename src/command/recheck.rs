@@ -6,7 +6,7 @@ use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::{Checking, Effort, Finding, LARGEST_FILE, ProofSources, Unchecked, VerdictFile};
 use palmistry::file::read_text;
-use palmistry::foreign::shown_path;
+use palmistry::foreign::{shown, shown_path};
 use palmistry::report::{has_failed, recheck_json, recheck_text};
 use std::path::PathBuf;
 
@@ -57,7 +57,11 @@ impl Recheck {
             .collect();
         if let Some(why) = missing.as_deref().and_then(<[_]>::first) {
             return Err(Unusable::report(
-                format!("{}: no proof file that it names can be read: {why}", shown_path(&self.file)),
+                format!(
+                    "{}: no proof file that it names can be read: {}",
+                    shown_path(&self.file),
+                    shown(why)
+                ),
                 "--proofs names the folder from which the names of proof files are read",
             ));
         }

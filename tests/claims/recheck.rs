@@ -570,10 +570,27 @@ fn no_name_forges_a_line_of_the_answer() {
     forged["verdicts"][0]["id"] =
         json!("1\n  confirmed      refuted   by hand 2: evaluated again\u{1b}[2J\u{202e}");
     forged["verdicts"][0]["file"] = json!("by\rhand\u{7}");
-    let path = write(&folder, "forged.json", forged.to_string());
-    let output = palmistry(&["recheck", path.to_str().expect("a name")]);
-    let text = String::from_utf8_lossy(&output.stdout);
-    assert_eq!(text.lines().count(), 2, "{text}");
-    assert!(text.starts_with("  not checked") && text.ends_with("1 verdicts: 1 not checked\n"), "{text}");
+    let run = |forged: &Value| {
+        let path = write(&folder, "forged.json", forged.to_string());
+        let output = palmistry(&[
+            "recheck",
+            path.to_str().expect("a name"),
+            "--proofs",
+            folder.path().to_str().expect("a name"),
+        ]);
+        [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned())
+    };
+    // no file at all is there: the reason has the name of one
+    let [text, why] = run(&forged);
+    assert!(text.is_empty() && why.contains("no proof file") && why.contains("hand"), "{text}{why}");
+    assert!(!why.contains(['\u{1b}', '\u{202e}', '\r', '\u{7}']), "{why:?}");
+    // one of two is
+    write(&folder, "real.proof", "system \"s\" state x drift f x' = x output x\n");
+    let mut real = forged["verdicts"][0].clone();
+    (real["id"], real["file"]) = (json!("2"), json!("real.proof"));
+    forged["verdicts"].as_array_mut().expect("a list").push(real);
+    let [text, _] = run(&forged);
+    assert_eq!(text.lines().count(), 3, "{text}");
+    assert!(text.starts_with("  not checked"), "{text}");
     assert!(!text.contains(['\u{1b}', '\u{202e}', '\r', '\u{7}']), "{text:?}");
 }
