@@ -75,7 +75,7 @@ pub use palmistry_checker as checker;
 #[doc(hidden)]
 pub use palmistry_coq as coq;
 
-pub use palmistry_rank::{observability, sweep};
+pub use palmistry_rank::{design, observability, sweep};
 
 pub use palmistry_reduce as reduction;
 

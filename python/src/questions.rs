@@ -14,7 +14,7 @@ use palmistry::report::{
     accessibility_json, accessibility_text, drops_json, drops_page, drops_text, global_json, global_text,
     recheck_json, recheck_text,
 };
-use palmistry::sweep::{RankError, answer_accessibility, answer_solutions};
+use palmistry::sweep::{RankError, SolutionsWanted, answer_accessibility, answer_solutions};
 use palmistry::system::given_number;
 use palmistry::{RankQuestion, System as Read};
 use pyo3::prelude::*;
@@ -27,10 +27,11 @@ const LONGEST_MODEL: u64 = 16 << 20;
 
 /// How many values of each unknown give the same outputs.
 #[pyfunction]
-pub fn solutions(py: Python<'_>, system: &System, work: Option<u64>) -> PyResult<Told> {
+pub fn solutions(py: Python<'_>, system: &System, functions: bool, work: Option<u64>) -> PyResult<Told> {
     let mut system = Read::clone(system.read_system());
     let work = work.unwrap_or(palmistry::observability::SOLUTIONS_WORK);
-    let found = keeping(py, move |interrupt| answer_solutions(&mut system, work, interrupt));
+    let wanted = if functions { SolutionsWanted::Functions } else { SolutionsWanted::Values };
+    let found = keeping(py, move |interrupt| answer_solutions(&mut system, wanted, work, interrupt));
     let made = |answer| Told::new(global_json(&answer), global_text(&answer));
     let found = found.map_err(|cut| cut.map(|found| found.ok().map(made)).with_found(py))?;
     found.map(made).map_err(|why| unusable(py, &why.to_string(), None))

@@ -1,5 +1,6 @@
-//! `palmistry advise`: how palms may move so that they touch all of a body.
+//! `palmistry advise`: how palms may move so that they touch all of a body; what to measure besides in any system.
 
+use super::advise_system::By;
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
 use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
@@ -10,9 +11,13 @@ use palmistry::pose_surface::numbers;
 use palmistry::report::{advice_json, advice_text};
 use std::path::PathBuf;
 
-/// Searches for motions of two palms that touch all normals of a body and hold it all the time, before an experiment is made.
+/// Plans an experiment: what to measure besides in any system, or how palms should move.
 ///
-/// SCENE has the body, how it starts, how long the experiment lasts, and the observer. Courses of the palms (an angle, a rate and a swing each) are drawn
+/// With --identify FILE is a proof file. All minimal sets of further outputs, known parameters, inputs and experiments are found by which the unknowns
+/// that are named become identifiable or observable, the smallest sets first. That a set suffices, and that nothing of it can be left out, is decided as for any file.
+///
+/// Without it FILE is a scene, and motions of two palms are searched for that touch all normals of a body and hold it all the time.
+/// The scene has the body, how it starts, how long the experiment lasts, and the observer. Courses of the palms (an angle, a rate and a swing each) are drawn
 /// within limits, the body is moved by Newton's laws, and the best courses are varied, less and less. Of those that touch most it is asked how well windows of
 /// the measurements could determine the state: the Cramér-Rao bound at the truth, with the scene's sensors. What is found is printed with the lines to paste
 /// into [palms]. The search is random: the same seed gives the same answer with any number of threads, and more trials may find better ones.
@@ -20,15 +25,32 @@ use std::path::PathBuf;
 /// Of a scene with motion = "spatial" it searches for runs: how to lay the body on its three palms, and how to set it turning, so that the hull of all contacts grows most, run by run, beside as
 /// many runs drawn at random.
 ///
-/// The exit status is 1 where no course was found that holds the body to the end, or fewer runs than were asked.
+/// The exit status is 1 where no set suffices, no course was found that holds the body to the end, or fewer runs than were asked.
 #[derive(Args)]
 #[command(after_help = "Examples:
+  palmistry advise mysystem.proof --identify k1,k2
+  palmistry advise mysystem.proof --identify all --globally --by outputs --measure x2 --measure 'x3 + x4'
   palmistry advise proofs/moll2002/scenes/general.toml --trials 64
   palmistry advise SCENE --angle1 0.3,0.9 --angle2 1.2,1.9 --rate 2 --seed 7 --json
   palmistry advise proofs/moll2002/scenes/figure_5_3.toml --runs 4 --trials 32")]
 pub(crate) struct Advise {
-    /// The scene.
-    pub(super) scene: PathBuf,
+    /// The scene, or with --identify the proof file.
+    pub(super) file: PathBuf,
+    /// The unknowns of a proof file that are to become identifiable or observable: their names, or 'all'.
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub(super) identify: Vec<String>,
+    /// With --identify: one value for each (globally), and not finitely many (locally).
+    #[arg(long, requires = "identify")]
+    pub(super) globally: bool,
+    /// With --identify: what may be added; outputs, known, inputs and experiments unless given.
+    #[arg(long, value_enum, value_name = "KIND,...", value_delimiter = ',', requires = "identify")]
+    pub(super) by: Vec<By>,
+    /// With --identify: an expression that can be measured (may be repeated); each unknown state unless given.
+    #[arg(long, value_name = "EXPRESSION", requires = "identify")]
+    pub(super) measure: Vec<String>,
+    /// With --identify: sets of no more additions are looked for.
+    #[arg(long, value_name = "N", default_value_t = 3, requires = "identify", value_parser = clap::value_parser!(u8).range(1..=8))]
+    pub(super) at_most: u8,
     /// How many courses are tried (400 unless given); in space for each run (32 unless given).
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(super) trials: Option<u64>,
@@ -47,7 +69,7 @@ pub(crate) struct Advise {
     /// Take this seed and not the scene's.
     #[arg(long, value_name = "S")]
     pub(super) seed: Option<u64>,
-    /// Print one JSON object with 'best' (its 'palms', 'coverage', 'gaps') and 'expected' bounds; in space with 'runs' (how they begin, 'hull', 'outer', 'random').
+    /// Print one JSON object with 'best' (its 'palms', 'coverage', 'gaps') and 'expected' bounds; in space with 'runs' (how they begin, 'hull', 'outer', 'random'); with --identify 'designs'.
     #[arg(long)]
     pub json: bool,
 }
@@ -64,7 +86,10 @@ fn range(option: &str, text: Option<&str>, default: [f64; 2]) -> miette::Result<
 
 impl Advise {
     pub fn run(self) -> miette::Result<Status> {
-        if let Some(scene) = SpaceScene::read(&self.scene) {
+        if !self.identify.is_empty() {
+            return self.run_system(&self.identify);
+        }
+        if let Some(scene) = SpaceScene::read(&self.file) {
             return self.run_space(scene?);
         }
         let first = range("--angle1", self.angle1.as_deref(), [0.2, 1.2])?;
@@ -78,7 +103,7 @@ impl Advise {
             let help = "leave it out, or name a scene with motion = \"spatial\"";
             return Err(Unusable::report("--runs is for bodies in space", help));
         }
-        let scene = Scene::read(&self.scene)?;
+        let scene = Scene::read(&self.file)?;
         let trials = self.trials.unwrap_or(400);
         let question = AdviceQuestion {
             limits: AdviceLimits { angles: [first, second], rate },

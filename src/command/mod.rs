@@ -6,6 +6,7 @@
 
 mod advise;
 mod advise_space;
+mod advise_system;
 mod arguments;
 mod certify;
 mod check;

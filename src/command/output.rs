@@ -200,6 +200,16 @@ pub(crate) fn progress(length: u64, what: &'static str) -> ProgressBar {
     bar
 }
 
+/// A count of what was done where nobody knows how much there is.
+pub(crate) fn counter(what: &'static str) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    if let Ok(style) = ProgressStyle::with_template("{msg:>28} {pos} {elapsed}") {
+        bar.set_style(style);
+    }
+    bar.set_message(what);
+    bar
+}
+
 /// A progress bar for a fraction between zero and one, in parts of ten thousand; its message says the rest.
 pub(crate) fn fraction_bar(what: &'static str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(10_000), ProgressDrawTarget::stderr());

@@ -19,7 +19,7 @@ use palmistry::report::{
 };
 use palmistry::sweep::{
     AccessibilityAnswer, GenericOnBranch, GlobalAnswer, MOST_DIGITS, RankError, RankPart, RankPreparation,
-    StateRow, StateTable, answer_accessibility_telling, answer_solutions_telling, shard_of,
+    SolutionsWanted, StateRow, StateTable, answer_accessibility_telling, answer_solutions_telling, shard_of,
 };
 use palmistry::{RankQuestion, System};
 use serde_json::json;
@@ -44,6 +44,7 @@ use std::sync::{Arc, Mutex, PoisonError};
   palmistry rank mysystem.proof --where 'sin(phi1) = 0'    on the set of a condition
   palmistry rank mysystem.proof --where-it-drops           the exact set, with a proof that it drops nowhere else
   palmistry rank mysystem.proof --global                   how many values of each unknown give the same outputs
+  palmistry rank mysystem.proof --functions                generators of all functions of the unknowns that have one value
   palmistry rank mysystem.proof --digits 40                the worst state's singular values, all digits certain
   palmistry rank mysystem.proof --accessible               what the inputs can move, by brackets
   palmistry rank mysystem.proof --samples 1000000 --shard 3/64 --part parts    one of 64 shards, on any machine
@@ -106,12 +107,16 @@ pub(crate) struct Rank {
     /// random points modulo random primes; each number says whether it is proved or computed.
     #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "accessible", "where_it_drops", "reparametrise", "shard", "merge", "missing"])]
     global: bool,
-    /// With '--global': how much work may be done, in products of residues; what takes more is undecided.
-    #[arg(long, default_value_t = SOLUTIONS_WORK, value_name = "N", requires = "global")]
+    /// As '--global', and then generators of all identifiable functions: rational functions of the unknowns that have one value for given
+    /// outputs, such as k1 + k2 and k1*k2 where k1 and k2 can be exchanged, and of which every other one is a rational function.
+    #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "accessible", "where_it_drops", "reparametrise", "shard", "merge", "missing"])]
+    functions: bool,
+    /// With '--global' and '--functions': how much work may be done, in products of residues; what takes more is undecided.
+    #[arg(long, default_value_t = SOLUTIONS_WORK, value_name = "N", conflicts_with_all = ["samples", "order", "at", "conditions", "accessible", "where_it_drops"])]
     work: u64,
     /// Write a row for each sampled state to a file, CSV or Parquet by its extension: index, rank, certified, smallest singular value,
     /// condition. With '--shard' those of its states.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["accessible", "where_it_drops", "global", "merge", "missing"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["accessible", "where_it_drops", "global", "functions", "merge", "missing"])]
     table: Option<PathBuf>,
     /// Add the coordinates of each state to that table, angles in radians.
     #[arg(long, requires = "table")]
@@ -205,7 +210,7 @@ impl Rank {
     }
 
     fn looked_at(&self, system: &mut System, known: &dyn Fn(SoFar)) -> Result<Status, Ended> {
-        if self.global {
+        if self.global || self.functions {
             return self.tell_values(system, known);
         }
         let fixed: BTreeMap<_, _> =
@@ -345,7 +350,8 @@ impl Rank {
     /// How many values of each unknown give the same outputs.
     fn tell_values(&self, system: &mut System, known: &dyn Fn(SoFar)) -> Result<Status, Ended> {
         let mut tell = |answer| known(SoFar::Values(Box::new(answer)));
-        let answer = answer_solutions_telling(system, self.work, &INTERRUPTED, &mut tell)?;
+        let wanted = if self.functions { SolutionsWanted::Functions } else { SolutionsWanted::Values };
+        let answer = answer_solutions_telling(system, wanted, self.work, &INTERRUPTED, &mut tell)?;
         begin_to_tell();
         let status =
             if answer.is_final() && !answer.interrupted { Status::AsExpected } else { Status::CutOff };

@@ -2,6 +2,7 @@
 
 use palmistry::drops::where_it_drops;
 use palmistry::report::{drops_json, global_json, rank_json};
+use palmistry::sweep::SolutionsWanted;
 use palmistry::sweep::answer_rank_at_once;
 use palmistry::{Outcome, RankQuestion, System, answer_rank, answer_solutions, decide, prove};
 use serde_json::Value;
@@ -121,8 +122,15 @@ fn fields_of_an_answer_agree() {
         "state x, y, z param a, b unknown drift f x' = a*y y' = b*z z' = 0 output x + y^2",
     ] {
         let text = format!("system \"s\" {body}");
-        let values =
-            global_json(&answer_solutions(&mut system(&text), 10_000_000, &Default::default()).unwrap());
+        let values = global_json(
+            &answer_solutions(
+                &mut system(&text),
+                SolutionsWanted::Functions,
+                10_000_000,
+                &Default::default(),
+            )
+            .unwrap(),
+        );
         for unknown in values["unknowns"].as_array().unwrap() {
             let [values, most, least, bound] =
                 ["values", "at_most", "at_least", "error_bound"].map(|key| unknown[key].clone());

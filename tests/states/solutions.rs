@@ -3,6 +3,7 @@
 
 use crate::common::{json, palmistry};
 use palmistry::observability::{Seen, Solutions, SolutionsOf, SolutionsQuestion, solutions};
+use palmistry::sweep::SolutionsWanted;
 use palmistry::{System, answer_solutions};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -43,7 +44,8 @@ fn number(of_it: &SolutionsOf) -> String {
 
 /// Each unknown with its number, and an exclamation mark where that is proved.
 fn table(text: &str) -> String {
-    let answer = answer_solutions(&mut read(text), WORK, &AtomicBool::new(false)).unwrap();
+    let answer =
+        answer_solutions(&mut read(text), SolutionsWanted::Values, WORK, &AtomicBool::new(false)).unwrap();
     let word = |of_it: &SolutionsOf| {
         format!("{} {}{}", of_it.name, number(of_it), if of_it.is_proved() { "!" } else { "" })
     };

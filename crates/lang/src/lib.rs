@@ -64,7 +64,7 @@ pub use given::{GivenError, given_number};
 pub use grammar::parse_statement;
 pub use model::{Assignment, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Time, Value};
 #[doc(hidden)]
-pub use outline::{Declaration, DeclarationKind, Outline};
+pub use outline::{Declaration, DeclarationKind, Outline, without_claims};
 #[doc(hidden)]
 pub use problems::{Cause, MOST_PROBLEMS};
 #[doc(hidden)]

@@ -197,6 +197,13 @@ impl Outline {
     }
 }
 
+/// A text without its claims, sets, maps, lines and reductions: the system alone.
+pub fn without_claims(text: &str) -> String {
+    let Entries { items, spans, .. } = parse_entries(text, MOST_DAMAGE);
+    let kept = items.iter().zip(spans).filter(|(item, _)| !matches!(item, Item::Claim(_) | Item::View(_)));
+    kept.map(|(_, span)| format!("{}\n", text[span].trim_end())).collect()
+}
+
 /// How much of an entry is left without the blanks and comments behind it.
 fn length_without_rest(text: &str) -> usize {
     let (mut end, mut quoted, mut comment) = (0, false, false);

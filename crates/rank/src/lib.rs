@@ -12,3 +12,6 @@ pub mod observability;
 
 // the rank at many states
 pub mod sweep;
+
+// what to add to an experiment
+pub mod design;

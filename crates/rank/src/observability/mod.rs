@@ -55,6 +55,7 @@ pub use flow::Flow;
 #[doc(hidden)]
 pub use generic::{Directions, Probe};
 pub use generic::{GenericAnswer, GenericRank, Seen, generic_answer, generic_answer_of, generic_rank};
+pub(crate) use generic::{OutputRows, Rows};
 #[doc(hidden)]
 pub use interior::{Interior, interior};
 #[doc(hidden)]
@@ -83,6 +84,6 @@ pub use singular::{Spectrum, singular_values};
 pub use state::float_inputs;
 pub use state::{Coordinate, MissingInput, NamedCoordinate, State, StateInWords};
 pub use symmetry::{
-    FieldComponent, NotReparametrised, SeenFunction, UnseenField, UnseenMotions, reparametrise,
-    unseen_motions,
+    FieldComponent, IdentifiableFunction, IdentifiableFunctions, NotReparametrised, SeenFunction,
+    UnseenField, UnseenMotions, identifiable_functions, reparametrise, unseen_motions,
 };

@@ -53,10 +53,11 @@ pub use palmistry_io::parts::PartError;
 pub use part::{MergeError, RankPart, shard_of};
 pub use preparation::{RankPreparation, answer_rank, answer_rank_at_once};
 pub use prepared::sweep;
+pub(crate) use question::named_unknowns;
 pub use question::{BranchAnswer, GenericOnBranch, RankAnswer, RankError, TakenRow};
 #[doc(hidden)]
 pub use scales::{DrawnStates, MeasuredRows, Scales};
-pub use solutions::{GlobalAnswer, answer_solutions, answer_solutions_telling};
+pub use solutions::{GlobalAnswer, SolutionsWanted, answer_solutions, answer_solutions_telling};
 pub use states::{RecordedState, SweepOptions, SweepReport};
 #[doc(hidden)]
 pub use stream::{

@@ -195,7 +195,7 @@ pub(super) fn guarded(system: &System) -> Vec<NodeId> {
 }
 
 /// The unknowns of a system, by name; a state that no field moves is a parameter, whatever it is called.
-pub(super) fn named_unknowns(system: &System) -> Vec<(String, UnknownKind)> {
+pub(crate) fn named_unknowns(system: &System) -> Vec<(String, UnknownKind)> {
     let fields = || system.moving_fields().into_iter().flat_map(|field| &system.fields[field].components);
     let moved: HashSet<Symbol> = fields()
         .filter(|(symbol, rate)| match system.time {

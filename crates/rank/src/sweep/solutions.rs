@@ -5,8 +5,8 @@ use super::paid::paid_for_memory;
 use super::question::{RankError, held_parameters, named_unknowns};
 use super::{Certainty, RankQuestion};
 use crate::observability::{
-    Branch, CodistributionError, Solutions, SolutionsAnswer, SolutionsQuestion, solutions_telling,
-    solve_conditions,
+    Branch, CodistributionError, IdentifiableFunctions, Solutions, SolutionsAnswer, SolutionsOf,
+    SolutionsQuestion, identifiable_functions, solutions_telling, solve_conditions,
 };
 use dashu::rational::RBig;
 use palmistry_lang::System;
@@ -28,6 +28,8 @@ pub struct GlobalAnswer {
     pub known: Vec<String>,
     /// What was found.
     pub solutions: SolutionsAnswer,
+    /// Generators of all identifiable functions, where they were asked for.
+    pub functions: Option<IdentifiableFunctions>,
     /// Whether somebody did not wait for the end.
     pub interrupted: bool,
     /// How long it took.
@@ -35,17 +37,29 @@ pub struct GlobalAnswer {
 }
 
 impl GlobalAnswer {
-    /// Whether the number of values of each unknown is known, be it computed or proved.
+    /// Whether the number of values of each unknown is known, be it computed or proved, and where generators of the identifiable functions were
+    /// asked for, whether they are.
     pub fn is_final(&self) -> bool {
-        self.solutions.unknowns.iter().all(|of_it| !matches!(of_it.solutions, Solutions::Undecided(_)))
+        let is_known = |of_it: &SolutionsOf| !matches!(of_it.solutions, Solutions::Undecided(_));
+        self.solutions.unknowns.iter().all(is_known)
+            && self.functions.as_ref().is_none_or(IdentifiableFunctions::generate_all)
     }
+}
+
+/// What is asked beside the number of values of each unknown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SolutionsWanted {
+    /// Nothing.
+    Values,
+    /// Generators of all identifiable functions.
+    Functions,
 }
 
 /// How many values of each unknown of a system give the same outputs, at almost all states.
 ///
 /// ```
 /// use palmistry_lang::System;
-/// use palmistry_rank::{observability::Solutions, sweep::answer_solutions};
+/// use palmistry_rank::{observability::Solutions, sweep::{SolutionsWanted, answer_solutions}};
 /// let mut system: System = r#"
 ///     system "A rate that is the square of a constant"
 ///     state x
@@ -53,11 +67,15 @@ impl GlobalAnswer {
 ///     drift f  x' = -k^2*x
 ///     output x
 /// "#.parse()?;
-/// let answer = answer_solutions(&mut system, 1_000_000, &Default::default())?;
+/// let answer = answer_solutions(&mut system, SolutionsWanted::Functions, 1_000_000, &Default::default())?;
 /// let of_k = &answer.solutions.unknowns[1];
 /// assert_eq!(of_k.solutions, Solutions::Finite(2));
 /// // the one is minus the other: proved
 /// assert_eq!(of_k.at_least.as_ref().map(|(_, map)| map.as_str()), Some("k -> -k"));
+/// // its square has one value, and with the state it generates all that does
+/// let functions = answer.functions.ok_or("asked for")?;
+/// assert_eq!(functions.functions.iter().map(|of_it| of_it.text.as_str()).collect::<Vec<_>>(), ["x", "k^2"]);
+/// assert!(functions.generate_all());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -65,10 +83,11 @@ impl GlobalAnswer {
 /// No unknowns or no outputs, no drift or input, values at the beginning that cannot be solved for.
 pub fn answer_solutions(
     system: &mut System,
+    wanted: SolutionsWanted,
     work: u64,
     interrupt: &AtomicBool,
 ) -> Result<GlobalAnswer, RankError> {
-    answer_solutions_telling(system, work, interrupt, &mut |_| ())
+    answer_solutions_telling(system, wanted, work, interrupt, &mut |_| ())
 }
 
 /// The same, and tells what is known before the end as soon as it is: as an answer that was interrupted.
@@ -77,6 +96,7 @@ pub fn answer_solutions(
 /// As for [`answer_solutions`].
 pub fn answer_solutions_telling(
     system: &mut System,
+    wanted: SolutionsWanted,
     work: u64,
     interrupt: &AtomicBool,
     known: &mut dyn FnMut(GlobalAnswer),
@@ -105,6 +125,7 @@ pub fn answer_solutions_telling(
         held,
         known: system.known_names(),
         solutions: SolutionsAnswer::default(),
+        functions: None,
         interrupted: true,
         seconds: 0.0,
     };
@@ -115,10 +136,15 @@ pub fn answer_solutions_telling(
         }
         GlobalAnswer { solutions, seconds: begin.elapsed().as_secs_f64(), ..blank.clone() }
     };
-    let found = paid_for_memory(system, |system| {
-        Ok(solutions_telling(system, &question, &mut |so_far| known(finished(so_far)))?)
+    let (found, functions) = paid_for_memory(system, |system| {
+        let found = solutions_telling(system, &question, &mut |so_far| known(finished(so_far)))?;
+        let functions = (wanted == SolutionsWanted::Functions).then(|| {
+            known(finished(found.clone()));
+            identifiable_functions(system, &question, &found)
+        });
+        Ok((found, functions))
     })?;
-    let answer = finished(found);
+    let answer = GlobalAnswer { functions, ..finished(found) };
     // what is final has lost nothing
     let interrupted = interrupt.load(Ordering::Relaxed) && !answer.is_final();
     Ok(GlobalAnswer { interrupted, ..answer })

@@ -2,10 +2,13 @@
 
 use super::generic::unknown_verdict;
 use crate::claims::outcomes::error_bound;
+use crate::layout::counted;
 use crate::names::{plain_number, values_json, values_text};
 use palmistry_io::foreign::shown;
 use palmistry_lang::UnknownKind;
-use palmistry_rank::observability::{SecondPoint, Seen, Solutions, SolutionsOf};
+use palmistry_rank::observability::{
+    IdentifiableFunction, IdentifiableFunctions, SecondPoint, Seen, Solutions, SolutionsOf,
+};
 use palmistry_rank::sweep::GlobalAnswer;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -72,8 +75,68 @@ pub fn global_json(answer: &GlobalAnswer) -> Value {
         "products": found.work,
         "unknowns": found.unknowns.iter().map(unknown_json).collect::<Vec<_>>(),
         "second_point": found.second.as_ref().map(second_json),
+        "identifiable_functions": answer.functions.as_ref().map(functions_json),
         "seconds": answer.seconds,
     })
+}
+
+fn functions_json(found: &IdentifiableFunctions) -> Value {
+    let function = |of_it: &IdentifiableFunction| {
+        json!({
+            "function": of_it.text,
+            "is_unknown": of_it.is_unknown,
+            "verdict": if of_it.log2_error.is_some() { "proved" } else { "computed" },
+            "error_bound": of_it.log2_error.map(error_bound),
+        })
+    };
+    json!({
+        "functions": found.functions.iter().map(function).collect::<Vec<_>>(),
+        "generate_all": found.generate_all(),
+        "missing": found.missing,
+        "solutions_in_common": found.common.map(|[common, _]| common),
+        "why": found.open,
+    })
+}
+
+/// Longer functions do not widen the column of functions.
+const WIDEST: usize = 40;
+
+/// Generators of the identifiable functions, and whether every other one is a rational function of them.
+fn functions_text(found: &IdentifiableFunctions) -> String {
+    let mut out = String::new();
+    if !found.functions.is_empty() {
+        let all = if found.generate_all() {
+            ", of which every other one is a rational function (computed)"
+        } else {
+            ""
+        };
+        let _ = writeln!(out, "identifiable functions: one value for given outputs{all}");
+    }
+    // a column for the longest of those that leave room for it
+    let lengths = found.functions.iter().map(|of_it| of_it.text.chars().count());
+    let width = lengths.filter(|length| *length <= WIDEST).max().unwrap_or(0);
+    for of_it in &found.functions {
+        let how = match of_it.log2_error {
+            Some(f64::NEG_INFINITY) => "proved, certain".to_owned(),
+            Some(log2_error) => format!("proved, error probability below {}", error_bound(log2_error)),
+            None => "computed".to_owned(),
+        };
+        let _ = writeln!(out, "  {:<width$}  {how}", of_it.text);
+    }
+    if found.missing > 0 {
+        let more = counted(found.missing, "further independent function");
+        let is = if found.missing == 1 { "is" } else { "are" };
+        let _ = writeln!(out, "{more} {is} identifiable at least locally, and {is} not found");
+    } else if let Some([common, outputs]) = found.common.filter(|[common, outputs]| common > outputs) {
+        let _ = writeln!(
+            out,
+            "these functions have {common} solutions in common where the outputs have {outputs}: others, which are not found, tell more apart"
+        );
+    }
+    if let Some(why) = &found.open {
+        let _ = writeln!(out, "not all is known: {why}");
+    }
+    out
 }
 
 /// The verdict on an unknown: the global one where the number of solutions is known, else the local one.
@@ -159,6 +222,9 @@ pub fn global_text(answer: &GlobalAnswer) -> String {
             let text = if one == other { one } else { format!("{one} or {other}") };
             let _ = writeln!(out, "  {name} = {text}");
         }
+    }
+    if let Some(functions) = &answer.functions {
+        out.push_str(&functions_text(functions));
     }
     if found.rounds > 0 {
         let orders: Vec<String> = found.orders.iter().map(ToString::to_string).collect();

@@ -31,6 +31,7 @@ mod point;
 mod quotient;
 mod round;
 mod second;
+mod slice;
 #[cfg(test)]
 mod tests;
 
@@ -44,6 +45,7 @@ pub use mirror::{Image, Mirror, mirrors};
 use model::Model;
 use palmistry_lang::{Assignment, System, UnknownKind};
 use palmistry_math::expression::NodeId;
+pub(super) use slice::{SlicedVariable, Slicer};
 use std::sync::atomic::AtomicBool;
 
 /// How many values give the same outputs, at almost all states.

@@ -117,13 +117,23 @@ fn needed(model: &Model, orders: &Orders) -> Vec<Option<usize>> {
     needed
 }
 
+/// Where the unknowns that are free are held, which makes a fibre finite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Held {
+    /// At the values that the point has.
+    AtThePoint,
+    /// At other random values: what has one value there and at the point has it on the whole fibre.
+    Elsewhere,
+}
+
 impl Fibre {
-    /// The fibre through a point, with the unknowns that are free held at their values.
+    /// The fibre through a point, with the unknowns that are free held.
     pub fn new(
         model: &Model,
         orders: &Orders,
         field: PrimeField,
         source: &mut Source,
+        held: Held,
     ) -> Result<Fibre, Trouble> {
         let numbering = Numbering { variables: model.variables.len(), asked: model.asked.len() };
         let needed = needed(model, orders);
@@ -205,12 +215,23 @@ impl Fibre {
             }
         }
         let mut fibre = Fibre { field, equations, unknowns: Vec::new(), asked: Vec::new(), values };
-        fibre.ties(model, orders, &numbering)?;
+        let free = match held {
+            Held::AtThePoint => HashMap::new(),
+            Held::Elsewhere => elsewhere(model, orders, &field, source),
+        };
+        fibre.ties(model, orders, &numbering, &free)?;
         Ok(fibre)
     }
 
-    /// What is known, what is held, that denominators do not vanish, that angles are points of the circle; and what is asked.
-    fn ties(&mut self, model: &Model, orders: &Orders, numbering: &Numbering) -> Result<(), Trouble> {
+    /// What is known, what is held (at values of the point, but where others are given), that denominators do not vanish, that angles are
+    /// points of the circle; and what is asked.
+    fn ties(
+        &mut self,
+        model: &Model,
+        orders: &Orders,
+        numbering: &Numbering,
+        elsewhere: &HashMap<u32, u64>,
+    ) -> Result<(), Trouble> {
         let field = self.field;
         let too_large = || Trouble::TooLarge("the equations are too long".to_owned());
         let minus_one = field.modulus() - field.one();
@@ -221,7 +242,10 @@ impl Fibre {
         held.extend(model.given.iter().map(|(place, _)| *place));
         let mut known: HashMap<u32, u64> = held
             .into_iter()
-            .filter_map(|place| Some((at_first(place), *self.values.get(&at_first(place))?)))
+            .filter_map(|place| {
+                let jet = at_first(place);
+                Some((jet, *elsewhere.get(&jet).or_else(|| self.values.get(&jet))?))
+            })
             .collect();
         for (place, variable) in model.variables.iter().enumerate() {
             if let Motion::Driven = variable.motion {
@@ -289,6 +313,21 @@ impl Fibre {
             .collect();
         Ok(())
     }
+}
+
+/// Other random values of the unknowns that are free.
+fn elsewhere(model: &Model, orders: &Orders, field: &PrimeField, source: &mut Source) -> HashMap<u32, u64> {
+    let mut values = HashMap::new();
+    for free in &orders.free {
+        match model.unknowns[*free].1.as_slice() {
+            [cosine, sine] => {
+                let unit = field.draw_unit(source.random());
+                values.extend([(*sine as u32, unit.0), (*cosine as u32, unit.1)]);
+            }
+            places => values.extend(places.iter().map(|place| (*place as u32, field.draw(source.random())))),
+        }
+    }
+    values
 }
 
 /// Random values at the beginning, or those that the file gives.

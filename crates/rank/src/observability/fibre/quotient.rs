@@ -166,8 +166,17 @@ impl Algebra {
         (single, self.basis.monomials.quotient(monomial, single))
     }
 
+    /// The function that is one everywhere.
+    pub fn one(&self) -> Vec<u64> {
+        let mut unit = vec![0; self.standard.len()];
+        if let Some(first) = unit.first_mut() {
+            *first = self.field().one();
+        }
+        unit
+    }
+
     /// `polynomial * vector`
-    fn apply(&mut self, polynomial: &[(Vec<(usize, u16)>, u64)], vector: &[u64]) -> Vec<u64> {
+    pub fn apply(&mut self, polynomial: &[(Vec<(usize, u16)>, u64)], vector: &[u64]) -> Vec<u64> {
         let field = self.field();
         let mut sum = vec![0; self.standard.len()];
         for (monomial, coefficient) in polynomial {

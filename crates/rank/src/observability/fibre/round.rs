@@ -6,7 +6,7 @@ use super::eliminate::{Solved, TERM, terms};
 use super::jets::Jet;
 use super::model::{Model, Motion, Quotient};
 use super::monomials::Monomials;
-use super::point::{Fibre, Numbering, Source, Trouble};
+use super::point::{Fibre, Held, Numbering, Source, Trouble};
 use super::quotient::{Algebra, NoAlgebra, distinct_roots};
 use crate::observability::generic::Orders;
 use palmistry_math::number::PrimeField;
@@ -108,6 +108,25 @@ pub(super) fn round(
     course: &Course,
     rng: &mut ChaCha8Rng,
 ) -> Result<Round, String> {
+    by_ways(orders, question, course, |orders, way| {
+        let begin = course.work.get();
+        let fibre = random_fibre(model, orders, (None, Held::AtThePoint), rng)?;
+        let round = analysed(model, fibre, question, course, way, rng)?;
+        Ok(Round { work: course.work.get() - begin, ..round })
+    })
+}
+
+/// What one way after the other finds, with more and more work for each; the one that led to something first is the way from then on. A try
+/// is given the orders and the way with the end of its work.
+///
+/// # Errors
+/// In words, where all ways are too much work.
+pub(super) fn by_ways<T>(
+    orders: &Orders,
+    question: &SolutionsQuestion,
+    course: &Course,
+    mut attempt: impl FnMut(&Orders, (Way, u64)) -> Result<T, NoRound>,
+) -> Result<T, String> {
     let tries: Vec<(Way, u64)> = match course.way.get() {
         Some(way) => vec![(way, 1)],
         None => {
@@ -120,14 +139,11 @@ pub(super) fn round(
         if too_large.contains(&way) {
             continue;
         }
-        let begin = course.work.get();
-        let end = (begin + (question.work / share).max(LEAST_WORK)).min(question.work);
-        let found = random_fibre(model, &orders.and_further(way.further), rng)
-            .and_then(|fibre| analysed(model, fibre, question, course, (way, end), rng));
-        stopped = match found {
-            Ok(round) => {
+        let end = (course.work.get() + (question.work / share).max(LEAST_WORK)).min(question.work);
+        stopped = match attempt(&orders.and_further(way.further), (way, end)) {
+            Ok(found) => {
                 course.way.set(Some(way));
-                return Ok(Round { work: course.work.get() - begin, ..round });
+                return Ok(found);
             }
             Err(NoRound::Failed(why)) => return Err(why),
             Err(_) if question.interrupt.load(Ordering::Relaxed) => {
@@ -146,11 +162,16 @@ pub(super) fn round(
     Err(stopped)
 }
 
-/// A random point that is no pole, and its fibre.
-fn random_fibre(model: &Model, orders: &Orders, rng: &mut ChaCha8Rng) -> Result<Fibre, NoRound> {
+/// A random point that is no pole, and its fibre, modulo a prime that is given or drawn.
+pub(super) fn random_fibre(
+    model: &Model,
+    orders: &Orders,
+    (field, held): (Option<PrimeField>, Held),
+    rng: &mut ChaCha8Rng,
+) -> Result<Fibre, NoRound> {
     for _ in 0..ATTEMPTS {
-        let field = PrimeField::random(rng);
-        match Fibre::new(model, orders, field, &mut Source { rng, given: HashMap::new() }) {
+        let field = field.unwrap_or_else(|| PrimeField::random(rng));
+        match Fibre::new(model, orders, field, &mut Source { rng, given: HashMap::new() }, held) {
             Ok(fibre) => return Ok(fibre),
             Err(Trouble::Pole) => {}
             Err(Trouble::TooLarge(why)) => return Err(NoRound::TooLarge(why)),
@@ -162,52 +183,91 @@ fn random_fibre(model: &Model, orders: &Orders, rng: &mut ChaCha8Rng) -> Result<
 /// What nobody should ever read.
 const ASTRAY: &str = "a random point does not lie on its own fibre";
 
+/// The functions on the points of a fibre: what was solved, and the algebra of what is left.
+pub(super) struct Functions {
+    solved: Solved,
+    place: HashMap<u32, usize>,
+    pub algebra: Algebra,
+}
+
+impl Functions {
+    /// The algebra of a fibre, one way.
+    ///
+    /// # Errors
+    /// Where this way takes too much, or no way has one.
+    pub fn of(
+        model: &Model,
+        field: PrimeField,
+        equations: Vec<Jet>,
+        question: &SolutionsQuestion,
+        work: &Cell<u64>,
+        (way, end): (Way, u64),
+    ) -> Result<Functions, NoRound> {
+        let is_over = || question.interrupt.load(Ordering::Relaxed) || work.get() > end;
+        let highest_degree = match way.form {
+            Form::Short => u32::MAX,
+            Form::Graded => 1,
+        };
+        // the equations were differentiated, and evaluated at the point
+        work.set(work.get() + 2 * TERM * terms(&equations));
+        let solved = Solved::new(&field, equations, highest_degree, work, &is_over);
+        let variables = solved.variables();
+        // derivatives of high order are the greatest
+        let place: HashMap<u32, usize> = variables.iter().rev().copied().zip(0..).collect();
+        let basis = basis_of(model, &solved, &place, field, way, work, &is_over)?;
+        let algebra = Algebra::new(basis, MOST_POINTS).map_err(|why| match why {
+            NoAlgebra::Infinite => NoRound::Failed("the fibre of a random point is not finite".to_owned()),
+            NoAlgebra::MoreThan(most) => {
+                NoRound::Failed(format!("more than {most} states and constants give the same outputs"))
+            }
+        })?;
+        Ok(Functions { solved, place, algebra })
+    }
+
+    /// A variable in the variables of the algebra.
+    pub fn express(&self, field: &PrimeField, variable: u32) -> Jet {
+        self.solved.express(field, variable)
+    }
+
+    /// A polynomial in the variables of the algebra.
+    ///
+    /// # Errors
+    /// Where a variable has any value.
+    pub fn element(&self, jet: Jet) -> Result<Vec<(Vec<(usize, u16)>, u64)>, NoRound> {
+        let mut polynomial = Vec::new();
+        for (monomial, coefficient) in &jet.terms {
+            let powers: Option<Vec<(usize, u16)>> =
+                monomial.iter().map(|(variable, power)| Some((*self.place.get(variable)?, *power))).collect();
+            let powers = powers.ok_or_else(|| {
+                NoRound::Failed("the fibre of a random point leaves an unknown open".to_owned())
+            })?;
+            polynomial.push((powers, *coefficient));
+        }
+        Ok(polynomial)
+    }
+}
+
 /// The points of a fibre, and the minimal polynomials of what is asked.
 pub(super) fn analysed(
     model: &Model,
     fibre: Fibre,
     question: &SolutionsQuestion,
     course: &Course,
-    (way, end): (Way, u64),
+    way: (Way, u64),
     rng: &mut ChaCha8Rng,
 ) -> Result<Round, NoRound> {
-    let is_over = || question.interrupt.load(Ordering::Relaxed) || course.work.get() > end;
-    let failed = |why: &str| NoRound::Failed(why.to_owned());
     let field = fibre.field;
-    let highest_degree = match way.form {
-        Form::Short => u32::MAX,
-        Form::Graded => 1,
-    };
-    // the equations were differentiated, and evaluated at the point
-    course.work.set(course.work.get() + 2 * TERM * terms(&fibre.equations));
-    let solved = Solved::new(&field, fibre.equations, highest_degree, &course.work, &is_over);
-    let variables = solved.variables();
-    // derivatives of high order are the greatest
-    let place: HashMap<u32, usize> = variables.iter().rev().copied().zip(0..).collect();
-    let basis = basis_of(model, &solved, &place, field, way, &course.work, &is_over)?;
-    let mut algebra = Algebra::new(basis, MOST_POINTS).map_err(|why| match why {
-        NoAlgebra::Infinite => failed("the fibre of a random point is not finite"),
-        NoAlgebra::MoreThan(most) => {
-            failed(&format!("more than {most} states and constants give the same outputs"))
-        }
-    })?;
-    if algebra.dimension() == 0 {
-        return Err(failed(ASTRAY));
+    let mut functions = Functions::of(model, field, fibre.equations, question, &course.work, way)?;
+    if functions.algebra.dimension() == 0 {
+        return Err(NoRound::Failed(ASTRAY.to_owned()));
     }
-    let mut minimal = |jet: Jet| -> Result<Vec<u64>, NoRound> {
-        let mut polynomial = Vec::new();
-        for (monomial, coefficient) in &jet.terms {
-            let powers: Option<Vec<(usize, u16)>> =
-                monomial.iter().map(|(variable, power)| Some((*place.get(variable)?, *power))).collect();
-            let powers =
-                powers.ok_or_else(|| failed("the fibre of a random point leaves an unknown open"))?;
-            polynomial.push((powers, *coefficient));
-        }
+    let minimal = |functions: &mut Functions, jet: Jet| -> Result<Vec<u64>, NoRound> {
+        let polynomial = functions.element(jet)?;
         if polynomial.iter().all(|(powers, _)| powers.is_empty()) {
             let value = polynomial.first().map_or(0, |(_, value)| *value);
             return Ok(vec![if value == 0 { 0 } else { field.modulus() - value }, field.one()]);
         }
-        Ok(algebra.minimal_polynomial(&polynomial))
+        Ok(functions.algebra.minimal_polynomial(&polynomial))
     };
     let mut polynomials = Vec::new();
     for of_it in &fibre.unknowns {
@@ -215,24 +275,25 @@ pub(super) fn analysed(
         let (mut jet, mut own) = (Jet::default(), 0);
         for variable in of_it {
             let factor = if of_it.len() > 1 { field.draw(rng) } else { field.one() };
-            jet.add_multiple(&field, &solved.express(&field, *variable), factor);
+            jet.add_multiple(&field, &functions.express(&field, *variable), factor);
             own = field.sum(own, field.product(factor, fibre.values[variable]));
         }
-        polynomials.push((minimal(jet)?, own));
+        polynomials.push((minimal(&mut functions, jet)?, own));
     }
     for variable in &fibre.asked {
-        polynomials.push((minimal(solved.express(&field, *variable))?, fibre.values[variable]));
+        let jet = functions.express(&field, *variable);
+        polynomials.push((minimal(&mut functions, jet)?, fibre.values[variable]));
     }
     // the point lies on its own fibre: its values are roots
     for (polynomial, own) in &polynomials {
         let value = polynomial.iter().rev().fold(0, |sum, c| field.sum(field.product(sum, *own), *c));
         if value != 0 {
-            return Err(failed(ASTRAY));
+            return Err(NoRound::Failed(ASTRAY.to_owned()));
         }
     }
     let polynomials: Vec<Vec<u64>> = polynomials.into_iter().map(|(polynomial, _)| polynomial).collect();
     let values = polynomials.iter().map(|polynomial| distinct_roots(&field, polynomial)).collect();
-    Ok(Round { points: algebra.dimension(), values, polynomials, work: 0 })
+    Ok(Round { points: functions.algebra.dimension(), values, polynomials, work: 0 })
 }
 
 /// The basis, one way.

@@ -6,7 +6,7 @@
 //! compared in rational numbers: nothing that was found modulo primes is left in that.
 
 use super::model::{Model, Motion};
-use super::point::{Fibre, Numbering, Source};
+use super::point::{Fibre, Held, Numbering, Source};
 use super::round::{Course, analysed};
 use super::{SecondPoint, SolutionsQuestion};
 use crate::observability::flow::Flow;
@@ -62,7 +62,8 @@ fn attempt(
     let mut residues: Vec<IBig> = vec![IBig::ZERO; model.unknowns.len()];
     for _ in 0..PRIMES {
         let field = PrimeField::random(rng);
-        let fibre = Fibre::new(model, orders, field, &mut Source { rng, given: given.clone() }).ok()?;
+        let source = &mut Source { rng, given: given.clone() };
+        let fibre = Fibre::new(model, orders, field, source, Held::AtThePoint).ok()?;
         let round = analysed(model, fibre, question, course, (way, question.work), rng).ok()?;
         if round.points != 2 {
             return None;

@@ -20,6 +20,7 @@ mod in_steps;
 mod matrix;
 mod orders;
 mod probe;
+mod rows;
 mod steps;
 #[cfg(test)]
 mod tests;
@@ -28,6 +29,7 @@ pub(super) use matrix::formal_rank;
 pub use matrix::{GenericRank, generic_rank};
 pub(crate) use orders::Orders;
 pub use probe::{Directions, Probe};
+pub(crate) use rows::{OutputRows, Rows};
 
 use super::saturation::Ceiling;
 use bound::Rounds;

@@ -11,6 +11,7 @@ mod ansatz;
 mod answer;
 mod express;
 mod functions;
+mod generators;
 mod kernel;
 mod lattice;
 mod modular;
@@ -20,6 +21,7 @@ mod reparametrise;
 mod section;
 
 pub use self::answer::{FieldComponent, SeenFunction, UnseenField, UnseenMotions};
+pub use self::generators::{IdentifiableFunction, IdentifiableFunctions, identifiable_functions};
 pub use self::reparametrise::{NotReparametrised, reparametrise};
 
 use self::ansatz::{Component, FieldTerms, fields_of_block};
@@ -33,7 +35,7 @@ use super::Codistribution;
 use super::generic::generic_answer;
 use super::saturation::Ceiling;
 use palmistry_lang::{Assignment, System, Time};
-use palmistry_math::expression::{NodeId, Program, Symbol, draw_residues, expand_angles};
+use palmistry_math::expression::{Graph, NodeId, Program, Symbol, SymbolInput, draw_residues, expand_angles};
 use palmistry_math::number::PrimeField;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -188,8 +190,8 @@ impl Attempt {
             self.found.functions_missing += found.missing;
             let begin = self.found.functions.len();
             for function in found.functions {
-                let factors = factor_nodes(system, source, &function);
-                let value = product(system, &factors);
+                let factors = factor_nodes(&mut system.graph, &source.variables, &function);
+                let value = product(&mut system.graph, &factors);
                 // that all unobservable directions leave it as it is puts its differential into the codistribution
                 let proof = match self.is_complete() && self.found.settles_the_rank {
                     true => is_unchanged(system, motion, &self.vectors, value, rng),
@@ -384,17 +386,20 @@ fn unseen_field(
     UnseenField { components: field.components.iter().map(component).collect(), log2_error }
 }
 
-fn factor_nodes(system: &mut System, source: &KernelSource, function: &FunctionTerms) -> Vec<(NodeId, i32)> {
+fn factor_nodes(
+    graph: &mut Graph,
+    variables: &[SymbolInput],
+    function: &FunctionTerms,
+) -> Vec<(NodeId, i32)> {
     let factor = |(polynomial, exponent): &(Polynomial, i64)| {
         let power = i32::try_from(*exponent).unwrap_or(i32::MAX);
-        (polynomial_node(&mut system.graph, &source.variables, polynomial), power)
+        (polynomial_node(graph, variables, polynomial), power)
     };
     function.factors.iter().map(factor).collect()
 }
 
 /// The product of powers, with a numerator and a denominator.
-fn product(system: &mut System, factors: &[(NodeId, i32)]) -> NodeId {
-    let graph = &mut system.graph;
+fn product(graph: &mut Graph, factors: &[(NodeId, i32)]) -> NodeId {
     let (mut top, mut bottom) = (graph.integer(1), graph.integer(1));
     for (factor, exponent) in factors {
         let power = graph.power(*factor, exponent.saturating_abs());
