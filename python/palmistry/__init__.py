@@ -23,6 +23,7 @@ _HOMES = {
     "Certificate": "answers",
     "Claim": "answers",
     "Claims": "answers",
+    "Designs": "answers",
     "Error": "errors",
     "EvaluationError": "errors",
     "Map": "answers",

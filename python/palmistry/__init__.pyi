@@ -9,6 +9,7 @@ from .answers import Accessibility as Accessibility
 from .answers import Certificate as Certificate
 from .answers import Claim as Claim
 from .answers import Claims as Claims
+from .answers import Designs as Designs
 from .answers import Map as Map
 from .answers import Motions as Motions
 from .answers import Observation as Observation

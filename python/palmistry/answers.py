@@ -288,6 +288,15 @@ class Solutions(Answer):
         return f"<solutions: {', '.join(values)}>"
 
 
+class Designs(Answer):
+    """What to measure or to know besides, so that unknowns become identifiable."""
+
+    @property
+    def sets(self) -> list[list[tuple[str, str | None]]]:
+        """The minimal sets, smallest first: of each addition its kind ('output', 'known', 'initial', 'input', 'experiment') and of what."""
+        return [[(addition["kind"], addition["what"]) for addition in design["additions"]] for design in self.json["designs"]]
+
+
 class SingularSet(Answer):
     """The sets on which the rank drops, each by its equations, with a proof that it drops nowhere else where there is one."""
 

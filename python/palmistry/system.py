@@ -7,7 +7,7 @@ import pathlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Union
 
-from .answers import Accessibility, Certificate, Claims, Map, Page, Rank, Recheck, SingularSet, Solutions, Stress, Trade, Value, Verdicts
+from .answers import Accessibility, Certificate, Claims, Designs, Map, Page, Rank, Recheck, SingularSet, Solutions, Stress, Trade, Value, Verdicts
 from .errors import Error
 from .tables import Table
 
@@ -284,15 +284,23 @@ class System:
             columns |= {"verdict": numpy.array(unique), "values": values, "values_are": solutions["verdict"][places]}
         return Table(columns)
 
-    def identifiable_functions(self) -> list[str] | None:
+    def identifiable_functions(self, *, globally: bool = False, work: int | None = None) -> list[str] | None:
         """Functions of the unobservable unknowns that are locally identifiable, in the language; None where not all were found. Parameters that `rank` holds at the file's values have these values
         here; with what error probability each is proved is in `rank(samples=0).json`.
+
+        globally: generators of all functions of the unknowns that have one value for given outputs, `palmistry rank --functions`; `global_(functions=True)` says how each is known. work: as there.
 
         >>> import palmistry
         >>> system = palmistry.System.parse('system "s" state x param a unknown, b unknown drift f x\\' = -a*b*x output x')
         >>> system.identifiable_functions(), system.unobservable_directions()
         (['a*b'], [{'a': 'a', 'b': '-b'}])
+        >>> system = palmistry.System.parse('system "s" state x param a unknown, b unknown drift f x\\' = -(a + b)*x + a*b output x')
+        >>> system.identifiable_functions(globally=True)
+        ['x', 'a*b', 'a + b']
         """
+        if globally:
+            found = self.global_(work, functions=True).json["identifiable_functions"]
+            return [function["function"] for function in found["functions"]] if found["generate_all"] else None
         return self._generically().identifiable_functions
 
     def unobservable_directions(self) -> list[dict[str, str]] | None:
@@ -319,16 +327,30 @@ class System:
         """
         return _asked(SingularSet, lambda: _native.drops(self._native, seed))
 
-    def global_(self, work: int | None = None) -> Solutions:
+    def global_(self, work: int | None = None, *, functions: bool = False) -> Solutions:
         """How many values of each unknown give the same outputs: one, finitely many over the complex numbers, or infinitely many. For rational systems, generically.
 
-        work: how much may be done, in products of residues; what takes more is undecided.
+        work: how much may be done, in products of residues; what takes more is undecided. functions: also generators of all identifiable functions.
 
         >>> square = palmistry.System.parse('system "s" state x param k unknown drift f x\\' = -k^2*x output x')
         >>> square.global_()
         <solutions: x 1, k 2>
         """
-        return _asked(Solutions, lambda: _native.solutions(self._native, work))
+        return _asked(Solutions, lambda: _native.solutions(self._native, functions, work))
+
+    def design(
+        self, identify: str | Iterable[str] = (), *, globally: bool = False, by: str | Iterable[str] | None = None, measure: str | Iterable[str] | None = None, at_most: int = 3
+    ) -> Designs:
+        """What to measure or to know besides, so that unknowns become identifiable: all minimal sets of additions, smallest first. `palmistry advise --identify`.
+
+        identify: the unknowns; all of them where none is named. globally: one value for each, and not finitely many. by: what may be added, of 'outputs', 'known', 'initial', 'inputs',
+        'experiments'; all but 'initial' unless given. measure: expressions that can be measured; the unknown states unless given. at_most: sets of no more additions are looked for.
+
+        >>> scaled = palmistry.System.parse('system "s" state x param k unknown, s unknown drift f x\\' = -k*x output s*x')
+        >>> scaled.design("s").sets
+        [[('output', 'x')], [('input', 'x')]]
+        """
+        return _asked(Designs, lambda: _native.design(self._native, _several(identify), globally, None if by is None else _several(by), None if measure is None else _several(measure), at_most))
 
     def accessible(self, samples: int | None = None, *, seed: int = 1, at: At = None, where: str | Iterable[str] = (), order: int | None = None) -> Accessibility:
         """Whether the drift and the inputs can move the state in every direction, by brackets. The arguments are those of `rank`.

@@ -23,8 +23,8 @@ mod _native {
     use super::observed::ObservationFound;
     #[pymodule_export]
     use super::questions::{
-        accessible, drops, imported, imported_problem, least_model, recheck, recheck_file, reparametrised,
-        solutions,
+        accessible, design, drops, imported, imported_problem, least_model, recheck, recheck_file,
+        reparametrised, solutions,
     };
     #[pymodule_export]
     use super::scenes::{latex, observe, observe_measured, our_names, verify};

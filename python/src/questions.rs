@@ -5,21 +5,22 @@ use crate::system::System;
 use crate::told::Told;
 use crate::work::{interruptible, keeping};
 use palmistry::checker::{Checking, Effort, LARGEST_FILE, ProofSources, VerdictFile};
+use palmistry::design::{AdditionKind, DesignQuestion, design as ask_design};
 use palmistry::drops::where_it_drops;
 use palmistry::file::read_text;
 use palmistry::foreign::name_of;
 use palmistry::import::{ForeignFormat, ForeignUnknowns, ImportQuestion, import, import_petab, petab_beside};
 use palmistry::reduction::{ReduceQuestion, reduce};
 use palmistry::report::{
-    accessibility_json, accessibility_text, drops_json, drops_page, drops_text, global_json, global_text,
-    recheck_json, recheck_text,
+    accessibility_json, accessibility_text, design_json, design_text, drops_json, drops_page, drops_text,
+    global_json, global_text, recheck_json, recheck_text,
 };
 use palmistry::sweep::{RankError, SolutionsWanted, answer_accessibility, answer_solutions};
 use palmistry::system::given_number;
 use palmistry::{RankQuestion, System as Read};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 /// Models of other programs that are longer than this are refused, as by the program.
@@ -33,6 +34,48 @@ pub fn solutions(py: Python<'_>, system: &System, functions: bool, work: Option<
     let wanted = if functions { SolutionsWanted::Functions } else { SolutionsWanted::Values };
     let found = keeping(py, move |interrupt| answer_solutions(&mut system, wanted, work, interrupt));
     let made = |answer| Told::new(global_json(&answer), global_text(&answer));
+    let found = found.map_err(|cut| cut.map(|found| found.ok().map(made)).with_found(py))?;
+    found.map(made).map_err(|why| unusable(py, &why.to_string(), None))
+}
+
+/// What to measure or to know besides.
+#[pyfunction]
+pub fn design(
+    py: Python<'_>,
+    system: &System,
+    identify: Vec<String>,
+    globally: bool,
+    by: Option<Vec<String>>,
+    measure: Option<Vec<String>>,
+    at_most: usize,
+) -> PyResult<Told> {
+    let kind = |word: &String| match word.as_str() {
+        "outputs" => Ok(AdditionKind::Outputs),
+        "known" => Ok(AdditionKind::Known),
+        "initial" => Ok(AdditionKind::Initial),
+        "inputs" => Ok(AdditionKind::Inputs),
+        "experiments" => Ok(AdditionKind::Experiments),
+        _ => {
+            let help = "one of 'outputs', 'known', 'initial', 'inputs', 'experiments'";
+            Err(unusable(py, &format!("'{word}' is nothing that can be added"), Some(help)))
+        }
+    };
+    let kinds = by.map(|by| by.iter().map(kind).collect::<PyResult<Vec<_>>>()).transpose()?;
+    let system = Read::clone(system.read_system());
+    let found = keeping(py, move |interrupt| {
+        let folder = PathBuf::from(&system.name);
+        let of_a_file = DesignQuestion::of(folder.parent().unwrap_or(Path::new("")), interrupt);
+        let question = DesignQuestion {
+            targets: identify,
+            kinds: kinds.unwrap_or_else(|| of_a_file.kinds.clone()),
+            measurable: measure,
+            at_most,
+            globally,
+            ..of_a_file
+        };
+        ask_design(&system, &question)
+    });
+    let made = |answer| Told::new(design_json(&answer), design_text(&answer));
     let found = found.map_err(|cut| cut.map(|found| found.ok().map(made)).with_found(py))?;
     found.map(made).map_err(|why| unusable(py, &why.to_string(), None))
 }

@@ -41,7 +41,7 @@ COMMANDS = {
     "check": (["check"], {}),
     "rank": (["System.rank", "System.global_", "System.accessible", "System.singular_set", "System.reparametrise", "sweep"], {
         "--samples": "samples", "--at": "at", "--where": "where", "--order": "order", "--verdict": "verdict", "--digits": "digits", "--table": "table", "--coordinates": "coordinates",
-        "--global": "System.global_", "--work": "work", "--accessible": "System.accessible", "--where-it-drops": "System.singular_set", "--out": "SingularSet.page",
+        "--global": "System.global_", "--functions": "functions", "--work": "work", "--accessible": "System.accessible", "--where-it-drops": "System.singular_set", "--out": "SingularSet.page",
         "--reparametrise": "System.reparametrise", "--details": "*all of it is in `.json`*", "--verdicts": "run", "--verdict-states": "run",
         "--shard": "shards", "--part": "folder", "--merge": "sweep", "--missing": "cluster.missing",
     }),
@@ -57,7 +57,7 @@ COMMANDS = {
         "--data": "data", "--studies": "studies", "--out": "Observation.page", "--record": "Observation.measurements", "--motion": "Observation.motion", "--track": "Observation.track",
         "--outline": "Observation.outline", "--shard": "shards", "--part": "folder", "--merge": "cluster.sweep_command", "--missing": "cluster.missing",
     }),
-    "advise": (["advise"], {f"--{name}": name for name in ("trials", "angle1", "angle2", "rate", "runs")}),
+    "advise": (["advise", "System.design"], {f"--{name.replace('_', '-')}": name for name in ("trials", "angle1", "angle2", "rate", "runs", "identify", "globally", "by", "measure", "at_most")}),
     "poses": (["poses"], {
         **{f"--{name}": name for name in ("shape", "centre", "palms", "margin", "margins", "turn", "pad", "tolerance", "grid", "levels")},
         "--out": "Poses.page", **dict.fromkeys(["--bodies", "--family", "--plans", "--seed"], "run"),

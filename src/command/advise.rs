@@ -1,6 +1,6 @@
 //! `palmistry advise`: how palms may move so that they touch all of a body; what to measure besides in any system.
 
-use super::advise_system::By;
+use super::arguments::By;
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
 use super::output::{Files, Form, progress};
 use super::{Status, Unusable};

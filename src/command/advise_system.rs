@@ -4,38 +4,10 @@ use super::advise::Advise;
 use super::interrupt::{INTERRUPTED, begin_to_tell};
 use super::output::{Files, Form, counter};
 use super::{Status, Unusable};
-use clap::ValueEnum;
 use palmistry::System;
 use palmistry::design::{AdditionKind, DesignQuestion, design};
 use palmistry::report::{design_json, design_text};
 use std::path::Path;
-
-/// Kinds of additions, as they are named on the command line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum By {
-    /// Further outputs: the unknown states, or what --measure names.
-    Outputs,
-    /// Parameters that are known.
-    Known,
-    /// States whose initial conditions are known.
-    Initial,
-    /// Known inputs that are added to the rates of states.
-    Inputs,
-    /// Further experiments from other initial conditions.
-    Experiments,
-}
-
-impl From<By> for AdditionKind {
-    fn from(by: By) -> AdditionKind {
-        match by {
-            By::Outputs => AdditionKind::Outputs,
-            By::Known => AdditionKind::Known,
-            By::Initial => AdditionKind::Initial,
-            By::Inputs => AdditionKind::Inputs,
-            By::Experiments => AdditionKind::Experiments,
-        }
-    }
-}
 
 impl Advise {
     /// Finds all minimal sets of additions.

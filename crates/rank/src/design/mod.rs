@@ -94,7 +94,7 @@ impl<'a> DesignQuestion<'a> {
 
 /// An unknown that is to be identified.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Target {
+pub struct DesignTarget {
     /// Its name.
     pub name: String,
     /// What it is.
@@ -123,7 +123,7 @@ pub struct DesignAnswer {
     /// Its title.
     pub title: String,
     /// What is to be identified, and how it stands without additions.
-    pub targets: Vec<Target>,
+    pub targets: Vec<DesignTarget>,
     /// Whether one value was asked for.
     pub globally: bool,
     /// Whether nothing needs to be added.
@@ -223,7 +223,7 @@ fn answered(system: &System, question: &DesignQuestion<'_>) -> Result<DesignAnsw
     let targets =
         wanted.iter().zip(now.seen.iter().zip(&now.solutions)).filter_map(|(name, (seen, solutions))| {
             let (_, kind) = kinds.iter().find(|(known, _)| known == name)?;
-            Some(Target { name: name.clone(), kind: *kind, seen: *seen, solutions: solutions.clone() })
+            Some(DesignTarget { name: name.clone(), kind: *kind, seen: *seen, solutions: solutions.clone() })
         });
     let mut answer = DesignAnswer {
         file: system.name.clone(),

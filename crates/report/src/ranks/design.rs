@@ -5,7 +5,7 @@ use crate::claims::outcomes::error_bound;
 use crate::layout::counted;
 use palmistry_io::foreign::shown;
 use palmistry_lang::UnknownKind;
-use palmistry_rank::design::{Addition, Design, DesignAnswer, Target};
+use palmistry_rank::design::{Addition, Design, DesignAnswer, DesignTarget};
 use palmistry_rank::observability::Solutions;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -26,7 +26,7 @@ fn words(addition: &Addition) -> String {
     match addition {
         Addition::Output(text) => format!("measure {text}"),
         Addition::Known(name) => format!("know {name}"),
-        Addition::Initial(name) => format!("know {name} at the beginning"),
+        Addition::Initial(name) => format!("know {name} initially"),
         Addition::Input(name) => format!("a known input into {name}'"),
         Addition::Experiment => "one more experiment".to_owned(),
     }
@@ -45,7 +45,7 @@ fn set_in_words(additions: &[Addition]) -> String {
 }
 
 /// What is known of a target as things stand.
-fn now(target: &Target) -> String {
+fn now(target: &DesignTarget) -> String {
     let local = unknown_verdict(target.kind, target.seen);
     let globally = if target.kind == UnknownKind::Parameter { "identifiable" } else { "observable" };
     match &target.solutions {
@@ -56,7 +56,7 @@ fn now(target: &Target) -> String {
     }
 }
 
-fn target_json(target: &Target) -> Value {
+fn target_json(target: &DesignTarget) -> Value {
     let solutions = match &target.solutions {
         Some(Solutions::Finite(count)) => json!(count),
         Some(Solutions::Infinite) => json!("infinity"),
@@ -114,7 +114,7 @@ pub fn design_text(answer: &DesignAnswer) -> String {
         let _ = writeln!(out, "  {:<width$}  {}", target.name, now(target));
     }
     if answer.is_met {
-        let _ = writeln!(out, "nothing needs to be added");
+        out.push_str("nothing needs to be added");
         return out;
     }
     let mut last = 0;
@@ -159,7 +159,7 @@ pub fn design_text(answer: &DesignAnswer) -> String {
     for (addition, why) in &answer.left_out {
         let _ = writeln!(out, "left out: {}: {}", words(addition), shown(why));
     }
-    out
+    out.trim_end().to_owned()
 }
 
 /// Longer sets do not widen the column of sets.

@@ -60,8 +60,7 @@ impl<'a> Slicer<'a> {
     pub fn new(system: &System, question: &'a SolutionsQuestion<'a>) -> Result<Slicer<'a>, String> {
         let model = Model::new(system, &question.conditions, &[])?;
         if model.is_on_a_set() {
-            return Err("initial conditions are given: functions are looked for at almost all states alone"
-                .to_owned());
+            return Err("initial conditions are given: functions are looked for generically alone".to_owned());
         }
         let mut rng = ChaCha8Rng::seed_from_u64(0x736c_6963_6573); // any fixed seed: what is found is counted again
         let orders = Probe::new(system, &question.conditions).orders(&mut rng)?;
@@ -195,6 +194,10 @@ impl<'a> Slicer<'a> {
         let course = Course { work: Cell::new(self.course.work.get()), way: Cell::new(None) };
         let found = by_ways(&self.orders, question, &course, |_, way| {
             let functions = Functions::of(model, field, equations.clone(), question, &course.work, way)?;
+            // what stands in no equation that is left has any value
+            for unknown in values.keys() {
+                functions.element(functions.express(&field, *unknown))?;
+            }
             Ok(functions.algebra.dimension())
         });
         self.course.work.set(course.work.get());
