@@ -39,7 +39,7 @@ SYSTEM''')
 #: In the order in which a reader needs them.
 ORDER = [
     "System", "observe", "stream", "verify", "sweep", "import_model", "import_problem", "check", "advise", "poses", "from_function", "from_sympy", "from_casadi", "recheck_file", "run", "threads", "latex",
-    "Claims", "Claim", "Rank", "Solutions", "SingularSet", "Accessibility", "Certificate", "Trade", "Stress", "Motions", "Poses", "Map", "Value", "Verdicts", "Observation", "Recheck", "Page", "Printed", "Table",
+    "Claims", "Claim", "Rank", "Solutions", "Designs", "SingularSet", "Accessibility", "Certificate", "Trade", "Stress", "Motions", "Poses", "Map", "Value", "Verdicts", "Observation", "Recheck", "Page", "Printed", "Table",
     "Error", "ReadError", "EvaluationError",
 ]  # fmt: skip
 

@@ -24,10 +24,6 @@ impl Advise {
             let help = "leave it out, or leave out --identify and name a scene";
             return Err(Unusable::report(format!("{option} is for scenes"), help));
         }
-        if let Some(text) = self.measure.iter().find(|text| text.chars().any(char::is_control)) {
-            let help = "write one expression in one line";
-            return Err(Unusable::report(format!("--measure: {text:?} is no expression"), help));
-        }
         let system = System::read(&self.file)?;
         let folder = self.file.parent().unwrap_or(Path::new(""));
         let bar = counter("sets of additions looked at");

@@ -183,7 +183,7 @@ fn the_command_advises() {
     for (arguments, word) in [
         (&["--identify", "a", "--trials", "3"][..], "--trials is for scenes"),
         (&["--identify", "q"], "'q' is no unknown"),
-        (&["--identify", "a", "--measure", "x\ny"], "is no expression"),
+        (&["--identify", "a", "--measure", "x\ny"], "is no expression in one line"),
     ] {
         let output = palmistry(&[&["advise", file], arguments].concat());
         let said = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -213,6 +213,11 @@ fn answered(system: &System, question: &DesignQuestion<'_>) -> Result<DesignAnsw
             )));
         }
     }
+    // what is added is written as a line of the file
+    let is_broken = |text: &&String| text.chars().any(char::is_control);
+    if let Some(text) = question.measurable.iter().flatten().find(is_broken) {
+        return Err(DesignError::Question(format!("{text:?} is no expression in one line")));
+    }
     let wanted: Vec<String> = match question.targets.is_empty() {
         true => names,
         false => question.targets.clone(),
