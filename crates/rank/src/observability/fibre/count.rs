@@ -3,7 +3,7 @@
 use super::model::Model;
 use super::round::{Course, Round, round};
 use super::{Solutions, SolutionsAnswer, SolutionsQuestion, bound, second, sum_of_errors};
-use crate::observability::generic::{Orders, Probe};
+use crate::observability::generic::{Orders, Probe, orders_on_orbits};
 use palmistry_lang::System;
 use palmistry_math::expression::LOG2_ERROR;
 use rand::SeedableRng;
@@ -25,13 +25,15 @@ pub(super) fn count(
     // any fixed seed: what is true almost everywhere does not depend on the user's
     let mut rng = ChaCha8Rng::seed_from_u64(0x6669_6272_6573);
     let probe = Probe::new(system, &question.conditions);
-    let mut orders = probe.orders(&mut rng)?;
-    if model.is_on_a_set() {
-        // an order at which nothing is added is no last one on a set that the fields leave
-        answer.orders_are_open = true;
-        let longest = orders.last.iter().copied().max().unwrap_or(0) + 1;
-        orders.last.fill(longest);
-    }
+    let orders = match model.is_on_a_set() {
+        true => {
+            // an order at which nothing is added is no last one on a set that the fields leave; what tells all locally may not tell all values apart
+            answer.orders_are_open = true;
+            let told = orders_on_orbits(system, &question.conditions, &mut rng);
+            probe.orders_on_a_set(told.as_deref(), &mut rng)?
+        }
+        false => probe.orders(&mut rng)?,
+    };
     answer.orders = orders.last.clone();
     let course = Course { work: Cell::new(0), way: Cell::new(None) };
     let mut best: Option<Round> = None;

@@ -17,7 +17,9 @@ mod covectors;
 mod echelon;
 mod equations;
 mod in_steps;
+mod laurent;
 mod matrix;
+mod orbit;
 mod orders;
 mod probe;
 mod rows;
@@ -159,7 +161,58 @@ pub fn generic_answer_of(
     }
     answer.closed_at_most = if bounds.is_ok() { closed } else { all };
     let seen = conclude(&mut answer, &best, &bounds, known_functions, ceiling);
+    if !rests && !answer.is_final() && known_functions && is_of_free_signals(system) {
+        return on_orbits(system, conditions, asked, &answer, &mut rng).unwrap_or((answer, seen));
+    }
     (answer, seen)
+}
+
+/// Up to which derivative of each output all is told at almost all states that satisfy the conditions, which the fields leave; nothing where that cannot be said.
+pub(crate) fn orders_on_orbits(
+    system: &System,
+    conditions: &Assignment,
+    rng: &mut ChaCha8Rng,
+) -> Option<Vec<usize>> {
+    let (probe, around) = orbit::probes(system, conditions, &[]);
+    let found = is_of_free_signals(system).then(|| probe.orbit(&around, rng).ok())??;
+    // one further derivative of each: bases end at lower degrees
+    Some(found.last.into_iter().map(|last| last + 1).collect())
+}
+
+/// Whether no output ties a known signal to states: signals are anything then.
+fn is_of_free_signals(system: &System) -> bool {
+    system.zero_outputs().is_empty() && system.longest_word().is_none()
+}
+
+/// The same on a set that the fields leave, by as many derivatives as tell all there; nothing where that cannot be said.
+fn on_orbits(
+    system: &System,
+    conditions: &Assignment,
+    asked: &[NodeId],
+    answer: &GenericAnswer,
+    rng: &mut ChaCha8Rng,
+) -> Option<(GenericAnswer, Vec<Seen>)> {
+    let (probe, around) = orbit::probes(system, conditions, asked);
+    let orbit = probe.orbit(&around, rng).ok()?;
+    let bounds = bound::rounds(&probe.equations, orbit.last.iter().max().map_or(1, |most| most + 1));
+    let mut best = (0, vec![false; answer.dimension + asked.len()]);
+    let mut answer = GenericAnswer { rounds: 0, order: 0, open: None, ..answer.clone() };
+    for _ in 0..bounds.as_ref().map_or(1, |bounds| bounds.rounds) {
+        let found = probe.round_up_to(&orbit.last, rng).ok()?;
+        answer.rounds += 1;
+        answer.order = answer.order.max(found.order);
+        let (rank, seen) = (found.rank(), found.seen());
+        if rank > best.0 {
+            best = (rank, seen);
+        } else if rank == best.0 {
+            best.1.iter_mut().zip(seen).for_each(|(best, here)| *best &= here);
+        }
+    }
+    let seen = conclude(&mut answer, &[best], &bounds, true, Ceiling::Rests);
+    if answer.at_most < answer.dimension {
+        answer.log2_error = (answer.log2_error.exp2() + orbit.log2_error.exp2()).log2();
+    }
+    Some((answer, seen))
 }
 
 /// An answer that says why it says nothing.

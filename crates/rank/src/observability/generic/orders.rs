@@ -29,6 +29,66 @@ impl Orders {
 }
 
 impl Probe {
+    /// The orders at a random point of a set that the fields may leave: there a derivative may add nothing and a later one may, so that
+    /// as many are looked at as there are coordinates, or as `told` says of each output.
+    ///
+    /// # Errors
+    /// In words, where the points were poles.
+    pub(crate) fn orders_on_a_set(
+        &self,
+        told: Option<&[usize]>,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<Orders, String> {
+        let all = vec![self.equations.closed.len() + 1; self.equations.outputs];
+        let mut refused = String::new();
+        for _ in 0..ATTEMPTS {
+            let field = PrimeField::random(rng);
+            match self.orders_up_to(told.unwrap_or(&all), field, rng) {
+                Ok(mut orders) if told.is_none() => {
+                    // what is behind the last one that adds something adds nothing that is known
+                    let last = orders.raised.iter().flatten().copied().max().unwrap_or(0) + 1;
+                    let usual = self.orders_in(field, rng).map(|usual| usual.last.into_iter().max());
+                    orders.last.fill(last.max(usual.ok().flatten().unwrap_or(0) + 1));
+                    return Ok(orders);
+                }
+                Ok(orders) => return Ok(orders),
+                Err(refusal) => refused = refusal.to_string(),
+            }
+        }
+        Err(format!("{ATTEMPTS} random points were poles: {refused}"))
+    }
+
+    fn orders_up_to(
+        &self,
+        last: &[usize],
+        field: PrimeField,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<Orders, Refusal> {
+        let equations = &self.equations;
+        let start = equations.draw(field, rng)?;
+        let length = last.iter().max().map_or(1, |most| most + 1);
+        let trajectory = equations.trajectory(field, &start, (rng.random(), None), length)?;
+        let integers: Vec<u64> =
+            std::iter::successors(Some(0), |k| Some(field.sum(*k, field.one()))).take(length + 1).collect();
+        let mut columns = Echelon::new(field, equations.columns.len());
+        let mut raised = vec![Vec::new(); equations.outputs];
+        let mut open: Vec<_> = trajectory.covectors.into_iter().take(equations.outputs).enumerate().collect();
+        for k in 0..length {
+            open.retain(|(output, _)| k <= last[*output]);
+            for (output, covector) in &mut open {
+                let value = covector.value();
+                if columns.insert(equations.columns.iter().map(|place| value[*place]).collect()) {
+                    raised[*output].push(k);
+                }
+                if k < last[*output] {
+                    *covector = covector.next(&field, &trajectory.entries, &integers);
+                }
+            }
+        }
+        let free = (0..equations.columns.len()).filter(|column| !columns.begins_at(*column)).collect();
+        Ok(Orders { last: last.to_vec(), raised, free })
+    }
+
     /// The orders at a random point.
     ///
     /// # Errors

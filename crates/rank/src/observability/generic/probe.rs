@@ -30,6 +30,11 @@ pub(super) struct Evaluated {
 }
 
 impl Evaluated {
+    /// The span by unknowns and what is asked for, the rank by all that moves, and the order of the last derivative that added to the span.
+    pub fn new(echelon: Echelon, asked: Vec<Vec<u64>>, closed: usize, order: usize) -> Evaluated {
+        Evaluated { echelon, asked, closed, order }
+    }
+
     /// The rank at this point.
     pub fn rank(&self) -> usize {
         self.echelon.rank()
