@@ -132,10 +132,16 @@ fn conditions_and_parts() {
     ];
     let texts: Vec<String> = claims.iter().map(|(text, _)| (*text).to_owned()).collect();
     assert_eq!(words(cold, &texts), claims.map(|(_, word)| word));
-    // x' = 1, y = x^5 z: where x = 0 the fifth derivative sees z, which is more derivatives than are taken on a set that the fields leave
+    // x' = 1, y = x^5 z: where x = 0 the fifth derivative sees z, and none before it
     let leaves = "state x, z drift f x' = 1 z' = 0 output x^5*z";
     let claims = ["observable(z) where x = 0".to_owned(), "observable(x, z)".to_owned()];
-    assert_eq!(words(leaves, &claims), ["undecided", "proved"]);
+    assert_eq!(words(leaves, &claims), ["proved", "proved"]);
+    // of two amounts that begin at nought and grow by constants, the product is seen: all of the orbit is special, so that no order is known to be the last
+    let special = "state x, z param a, b unknown initial x = 0, z = 0 drift f x' = a z' = b output x*z";
+    assert_eq!(
+        words(special, &["observable(a)".to_owned(), "rank([d(a*b)]) = 1".to_owned()]),
+        ["undecided", "proved"]
+    );
 }
 
 /// A motor that stands still with constant currents (proofs/koteich2015) does not tell its angle.

@@ -16,6 +16,7 @@ mod identifiable_functions;
 mod models;
 mod neighbours;
 mod observable;
+mod orbits;
 mod parts;
 mod rank_edges;
 mod region_edges;

@@ -218,8 +218,8 @@ fn a_pause_of_the_rank_is_not_taken_for_its_end() {
         drift f  x' = 1  z' = 0
         output x, x^5*z
         claim at_large: rank = 2
-        claim paused expect undecided: rank = 1 where x = 0
-        claim not_known expect undecided: rank = 2 where x = 0
+        claim paused expect refuted: rank = 1 where x = 0
+        claim in_the_end: rank = 2 where x = 0
         claim by_words: rank([d(x); d(L(f, f, f, f, f, x^5*z))]) = 2 where x = 0
     "#;
     let file = write(&folder, "pause.proof", text);

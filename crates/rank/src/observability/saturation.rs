@@ -16,7 +16,8 @@
 //!
 //! **Where fields leave the set** a rank may rest and grow again. There the rank at almost all states *around* the set, again by all
 //! coordinates that move, is a ceiling: rows that have it at a state of the set span the differentials of all Lie derivatives around it, with
-//! coefficients that are analytic there, so that no longer one adds anything ([`Ceiling::Around`]). Below it nothing is known.
+//! coefficients that are analytic there, so that no longer one adds anything ([`Ceiling::Around`]). Below it `generic/orbit.rs` says up to which order
+//! something can be added, where it can.
 //!
 //! **Each output by itself.** Along one trajectory the first derivative of an output that adds nothing to what was taken before is
 //! the last of it that can, for the same reason: the equation is differentiated.

@@ -18,6 +18,9 @@ const ATTEMPTS_FOR_ROOTS: usize = 4000;
 /// The signs of no more square roots than this are all tried.
 pub(super) const MOST_ROOTS: usize = 5;
 
+/// In systems of no more coordinates than this further derivatives are cheap.
+const SMALL: usize = 24;
+
 /// A point at which the equations were run to the end.
 pub(super) struct Evaluated {
     /// Of the unknowns.
@@ -83,7 +86,11 @@ impl Probe {
     fn evaluate(&self, start: &[u64], draw: Draw, rests: bool) -> Result<Evaluated, Refusal> {
         let equations = &self.equations;
         let full = equations.columns.len();
-        let most = equations.closed.len().max(1);
+        let most = match equations.closed.len().max(1) {
+            // at a state of its own a derivative of high order may be the first that tells something
+            closed if !rests && closed <= SMALL => 2 * closed + 2,
+            closed => closed,
+        };
         let outputs = equations.outputs.max(1);
         let mut length = match self.sufficed.load(Ordering::Relaxed) {
             _ if !rests => most,

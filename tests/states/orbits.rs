@@ -1,0 +1,227 @@
+//! Ranks where initial conditions are numbers: by hand, and on drawn systems beside the derivatives of the outputs up to a high order, by power series with
+//! derivatives along the unknowns in arithmetic of their own.
+
+use palmistry::{RankQuestion, System, answer_rank};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// At least, at most and the number of unknowns.
+fn rank(text: &str) -> (usize, usize, usize) {
+    let mut system: System =
+        format!("system \"s\" {text}").parse().unwrap_or_else(|error| panic!("{error:?} {text}"));
+    let answer = answer_rank(&mut system, &RankQuestion { samples: 0, ..RankQuestion::default() }).unwrap();
+    let generic = &answer.branches[0].generic;
+    (generic.at_least, generic.at_most, generic.dimension)
+}
+
+/// By hand: what a derivative of high order shows where those before it show nothing, and what none shows.
+#[test]
+fn ranks_from_numbers_by_hand() {
+    let rows = [
+        // S begins as t: a is told by the derivative of order n + 1
+        ("state S param a unknown initial S = 0 drift f S' = 1 + a*S^2 output S", (1, 1, 1)),
+        ("state S param a unknown initial S = 0 drift f S' = 1 + a*S^7 output S", (1, 1, 1)),
+        ("state S param a, b unknown initial S = 0 drift f S' = 1 + a*S^5 + b*S^3 output S", (2, 2, 2)),
+        // where it never leaves nought nothing is told
+        ("state S param a unknown initial S = 0 drift f S' = a*S + S^2 output S", (0, 0, 1)),
+        // y stays nought, so that its constants are not told; x tells its own
+        (
+            "state x, y param a, b, c unknown initial x = 1, y = 0 drift f x' = -a*x + y y' = b*y - c*y^2 output x",
+            (1, 1, 3),
+        ),
+        // a product of constants alone
+        ("state x, y param a, b unknown initial x = 0, y = 1 drift f x' = a*y*b y' = -y output x", (1, 1, 2)),
+        // a known input tells what comes with it, from rest too
+        ("state x param a, b unknown initial x = 0 drift f x' = -a*x input g x' = b output x", (2, 2, 2)),
+        // a square that begins at nought: x = k t, of which the square is seen
+        ("state x param k unknown initial x = 0 drift f x' = k output x^2", (1, 1, 1)),
+        // an amount in a unit that nobody knows, from a known one
+        ("state x param k, s unknown initial x = 1 drift f x' = -k*x output s*x", (2, 2, 2)),
+    ];
+    for (text, expected) in rows {
+        assert_eq!(rank(text), expected, "{text}");
+    }
+    // claims follow
+    let system: System =
+        "system \"s\" state S param a unknown initial S = 0 drift f S' = 1 + a*S^2 output S \
+                          claim 1: rank = 1 claim 2: observable(a) claim 3 expect refuted: rank = 0"
+            .parse()
+            .unwrap();
+    for outcome in palmistry::prove(&system) {
+        assert!(outcome.ok, "{} {:?}", outcome.statement, outcome.verdict);
+    }
+}
+
+const PRIME: u64 = (1 << 31) - 1;
+/// So many derivatives of the output.
+const ORDERS: usize = 32;
+
+fn power(base: u64, mut exponent: u64) -> u64 {
+    let (mut base, mut found) = (base, 1);
+    while exponent > 0 {
+        if exponent % 2 == 1 {
+            found = found * base % PRIME;
+        }
+        base = base * base % PRIME;
+        exponent /= 2;
+    }
+    found
+}
+
+/// A coefficient and its derivatives along the unknowns.
+type Dual = Vec<u64>;
+
+fn product(a: &Dual, b: &Dual) -> Dual {
+    (0..a.len())
+        .map(|k| match k {
+            0 => a[0] * b[0] % PRIME,
+            _ => (a[0] * b[k] + a[k] * b[0]) % PRIME,
+        })
+        .collect()
+}
+
+/// A polynomial: coefficients and the powers of all variables, states first.
+type Polynomial = Vec<(u64, Vec<u32>)>;
+
+fn text_of(polynomial: &Polynomial, names: &[String]) -> String {
+    let term = |(coefficient, powers): &(u64, Vec<u32>)| {
+        let factors = names.iter().zip(powers).filter(|(_, power)| **power > 0);
+        let factors: String = factors.map(|(name, power)| format!("*{name}^{power}")).collect();
+        format!("{coefficient}{factors}")
+    };
+    polynomial.iter().map(term).collect::<Vec<_>>().join(" + ")
+}
+
+/// The rank of the gradients of the output's Taylor coefficients, from given states and random constants.
+fn by_series(
+    rates: &[Polynomial],
+    output: &Polynomial,
+    initial: &[u64],
+    constants: usize,
+    rng: &mut ChaCha8Rng,
+) -> usize {
+    let states = rates.len();
+    let width = 1 + constants;
+    let zero = vec![0; width];
+    // by variable, by order
+    let mut series: Vec<Vec<Dual>> =
+        initial.iter().map(|value| vec![[vec![*value], vec![0; constants]].concat()]).collect();
+    for constant in 0..constants {
+        let mut dual = zero.clone();
+        dual[0] = rng.random_range(2..PRIME);
+        dual[1 + constant] = 1;
+        series.push(vec![dual]);
+    }
+    // the k-th coefficient of a product of series
+    let coefficient = |series: &[Vec<Dual>], polynomial: &Polynomial, k: usize| -> Dual {
+        let mut sum = zero.clone();
+        for (factor, powers) in polynomial {
+            let mut all: Vec<Dual> = vec![zero.clone(); k + 1];
+            all[0][0] = *factor;
+            for (variable, power) in powers.iter().enumerate() {
+                for _ in 0..*power {
+                    let mut next = vec![zero.clone(); k + 1];
+                    for (i, a) in all.iter().enumerate() {
+                        for (j, b) in series[variable].iter().enumerate().take(k + 1 - i) {
+                            let part = product(a, b);
+                            next[i + j]
+                                .iter_mut()
+                                .zip(part)
+                                .for_each(|(sum, part)| *sum = (*sum + part) % PRIME);
+                        }
+                    }
+                    all = next;
+                }
+            }
+            sum.iter_mut().zip(&all[k]).for_each(|(sum, part)| *sum = (*sum + part) % PRIME);
+        }
+        sum
+    };
+    let mut rows: Vec<Vec<u64>> = Vec::new();
+    for k in 0..ORDERS {
+        rows.push(coefficient(&series, output, k)[1..].to_vec());
+        let inverse = power(k as u64 + 1, PRIME - 2);
+        let next: Vec<Dual> = rates
+            .iter()
+            .map(|rate| {
+                coefficient(&series, rate, k).into_iter().map(|part| part * inverse % PRIME).collect()
+            })
+            .collect();
+        series[..states].iter_mut().zip(next).for_each(|(series, next)| series.push(next));
+    }
+    let mut rank = 0;
+    for column in 0..constants {
+        let Some(pivot) = (rank..rows.len()).find(|row| rows[*row][column] != 0) else { continue };
+        rows.swap(rank, pivot);
+        let inverse = power(rows[rank][column], PRIME - 2);
+        let own = rows[rank].clone();
+        for row in &mut rows[rank + 1..] {
+            let factor = row[column] * inverse % PRIME;
+            row.iter_mut()
+                .zip(&own)
+                .for_each(|(entry, own)| *entry = (*entry + (PRIME - factor) * own) % PRIME);
+        }
+        rank += 1;
+    }
+    rank
+}
+
+/// Drawn polynomial systems from numbers: what is said to be known is what many derivatives show, and most of them are decided.
+#[test]
+fn drawn_systems_from_numbers() {
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let (mut decided, mut late, mut low, mut all) = (0, 0, 0, 0);
+    for _ in 0..400 {
+        let (states, constants) = (rng.random_range(1..=3), rng.random_range(1..=3));
+        let names: Vec<String> = (0..states)
+            .map(|place| format!("x{place}"))
+            .chain((0..constants).map(|place| format!("k{place}")))
+            .collect();
+        let mut polynomial = |terms: usize, with_constants: bool| -> Polynomial {
+            (0..terms)
+                .map(|_| {
+                    let mut powers = vec![0; states + constants];
+                    for _ in 0..rng.random_range(0..=2) {
+                        powers[rng.random_range(0..states)] += 1;
+                    }
+                    if with_constants && rng.random_bool(0.7) {
+                        powers[states + rng.random_range(0..constants)] += 1;
+                    }
+                    (rng.random_range(1..=3), powers)
+                })
+                .collect()
+        };
+        let rates: Vec<Polynomial> = (0..states).map(|place| polynomial(1 + place % 2, true)).collect();
+        let output = polynomial(1, false);
+        if output[0].1.iter().all(|power| *power == 0) {
+            continue;
+        }
+        all += 1;
+        let initial: Vec<u64> = (0..states).map(|_| [0, 0, 1, 2][rng.random_range(0..4)]).collect();
+        let equations: String = names[..states]
+            .iter()
+            .zip(&rates)
+            .map(|(name, rate)| format!("\n  {name}' = {}", text_of(rate, &names)))
+            .collect();
+        let begin: Vec<String> =
+            names.iter().zip(&initial).map(|(name, value)| format!("{name} = {value}")).collect();
+        let text = format!(
+            "state {}\nparam {} unknown\ninitial {}\ndrift f{equations}\noutput {}",
+            names[..states].join(", "),
+            names[states..].join(", "),
+            begin.join(", "),
+            text_of(&output, &names)
+        );
+        let (at_least, at_most, _) = rank(&text);
+        let shown = by_series(&rates, &output, &initial, constants, &mut rng);
+        assert!(at_least <= shown && shown <= at_most, "{text}\nfrom {at_least} to {at_most}, and {shown}");
+        if at_least == at_most {
+            decided += 1;
+            low += usize::from(shown < constants);
+            late += usize::from(shown > 0);
+        }
+    }
+    println!("{decided} of {all} decided, {low} below full rank, {late} above nought");
+    // where all of an orbit is special, as where two amounts begin at nought and grow with each other, nothing is said
+    assert!(decided * 100 >= all * 98 && low >= 80 && late >= 80, "{decided} of {all}, {low} {late}");
+}
