@@ -92,24 +92,35 @@ fn text_of(polynomial: &Polynomial, names: &[String]) -> String {
     polynomial.iter().map(term).collect::<Vec<_>>().join(" + ")
 }
 
-/// The rank of the gradients of the output's Taylor coefficients, from given states and random constants.
-fn by_series(
-    rates: &[Polynomial],
-    output: &Polynomial,
-    initial: &[u64],
-    constants: usize,
-    rng: &mut ChaCha8Rng,
-) -> usize {
+/// What is known of a variable at the beginning.
+#[derive(Clone, Copy)]
+enum Begin {
+    /// This number, and nobody asks for it.
+    Known(u64),
+    /// This number, and it is asked for.
+    At(u64),
+    /// Any number, and it is asked for.
+    Any,
+}
+
+/// The rank of the gradients of the output's Taylor coefficients by what is asked for.
+fn by_series(rates: &[Polynomial], output: &Polynomial, begin: &[Begin], rng: &mut ChaCha8Rng) -> usize {
     let states = rates.len();
-    let width = 1 + constants;
-    let zero = vec![0; width];
+    let wanted = begin.iter().filter(|begin| !matches!(begin, Begin::Known(_))).count();
+    let zero = vec![0; 1 + wanted];
     // by variable, by order
-    let mut series: Vec<Vec<Dual>> =
-        initial.iter().map(|value| vec![[vec![*value], vec![0; constants]].concat()]).collect();
-    for constant in 0..constants {
+    let mut asked = 0;
+    let mut series: Vec<Vec<Dual>> = Vec::new();
+    for begin in begin {
         let mut dual = zero.clone();
-        dual[0] = rng.random_range(2..PRIME);
-        dual[1 + constant] = 1;
+        dual[0] = match begin {
+            Begin::Known(value) | Begin::At(value) => *value,
+            Begin::Any => rng.random_range(2..PRIME),
+        };
+        if !matches!(begin, Begin::Known(_)) {
+            asked += 1;
+            dual[asked] = 1;
+        }
         series.push(vec![dual]);
     }
     // the k-th coefficient of a product of series
@@ -150,7 +161,7 @@ fn by_series(
         series[..states].iter_mut().zip(next).for_each(|(series, next)| series.push(next));
     }
     let mut rank = 0;
-    for column in 0..constants {
+    for column in 0..wanted {
         let Some(pivot) = (rank..rows.len()).find(|row| rows[*row][column] != 0) else { continue };
         rows.swap(rank, pivot);
         let inverse = power(rows[rank][column], PRIME - 2);
@@ -166,62 +177,109 @@ fn by_series(
     rank
 }
 
+struct Drawn {
+    text: String,
+    rates: Vec<Polynomial>,
+    output: Polynomial,
+    initial: Vec<u64>,
+    constants: usize,
+}
+
+/// A polynomial system with one output and numbers from which it may begin; the text ends behind the constants. None where the output is a constant.
+fn drawn(rng: &mut ChaCha8Rng) -> Option<Drawn> {
+    let (states, constants) = (rng.random_range(1..=3), rng.random_range(1..=3));
+    let names: Vec<String> = (0..states)
+        .map(|place| format!("x{place}"))
+        .chain((0..constants).map(|place| format!("k{place}")))
+        .collect();
+    let mut polynomial = |terms: usize, with_constants: bool| -> Polynomial {
+        (0..terms)
+            .map(|_| {
+                let mut powers = vec![0; states + constants];
+                for _ in 0..rng.random_range(0..=2) {
+                    powers[rng.random_range(0..states)] += 1;
+                }
+                if with_constants && rng.random_bool(0.7) {
+                    powers[states + rng.random_range(0..constants)] += 1;
+                }
+                (rng.random_range(1..=3), powers)
+            })
+            .collect()
+    };
+    let rates: Vec<Polynomial> = (0..states).map(|place| polynomial(1 + place % 2, true)).collect();
+    let output = polynomial(1, false);
+    if output[0].1.iter().all(|power| *power == 0) {
+        return None;
+    }
+    let initial: Vec<u64> = (0..states).map(|_| [0, 0, 1, 2][rng.random_range(0..4)]).collect();
+    let rate = |(name, rate): (&String, &Polynomial)| format!("\n  {name}' = {}", text_of(rate, &names));
+    let equations: String = names.iter().zip(&rates).map(rate).collect();
+    let text = format!(
+        "state {}\nparam {} unknown\ndrift f{equations}\noutput {}\n",
+        names[..states].join(", "),
+        names[states..].join(", "),
+        text_of(&output, &names)
+    );
+    Some(Drawn { text, rates, output, initial, constants })
+}
+
 /// Drawn polynomial systems from numbers: what is said to be known is what many derivatives show, and most of them are decided.
 #[test]
 fn drawn_systems_from_numbers() {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
-    let (mut decided, mut late, mut low, mut all) = (0, 0, 0, 0);
+    let (mut decided, mut low, mut late, mut all) = (0, 0, 0, 0);
     for _ in 0..400 {
-        let (states, constants) = (rng.random_range(1..=3), rng.random_range(1..=3));
-        let names: Vec<String> = (0..states)
-            .map(|place| format!("x{place}"))
-            .chain((0..constants).map(|place| format!("k{place}")))
-            .collect();
-        let mut polynomial = |terms: usize, with_constants: bool| -> Polynomial {
-            (0..terms)
-                .map(|_| {
-                    let mut powers = vec![0; states + constants];
-                    for _ in 0..rng.random_range(0..=2) {
-                        powers[rng.random_range(0..states)] += 1;
-                    }
-                    if with_constants && rng.random_bool(0.7) {
-                        powers[states + rng.random_range(0..constants)] += 1;
-                    }
-                    (rng.random_range(1..=3), powers)
-                })
-                .collect()
-        };
-        let rates: Vec<Polynomial> = (0..states).map(|place| polynomial(1 + place % 2, true)).collect();
-        let output = polynomial(1, false);
-        if output[0].1.iter().all(|power| *power == 0) {
-            continue;
-        }
+        let Some(drawn) = drawn(&mut rng) else { continue };
         all += 1;
-        let initial: Vec<u64> = (0..states).map(|_| [0, 0, 1, 2][rng.random_range(0..4)]).collect();
-        let equations: String = names[..states]
-            .iter()
-            .zip(&rates)
-            .map(|(name, rate)| format!("\n  {name}' = {}", text_of(rate, &names)))
-            .collect();
-        let begin: Vec<String> =
-            names.iter().zip(&initial).map(|(name, value)| format!("{name} = {value}")).collect();
-        let text = format!(
-            "state {}\nparam {} unknown\ninitial {}\ndrift f{equations}\noutput {}",
-            names[..states].join(", "),
-            names[states..].join(", "),
-            begin.join(", "),
-            text_of(&output, &names)
-        );
+        let equation = |(place, value): (usize, &u64)| format!("x{place} = {value}");
+        let initial: Vec<String> = drawn.initial.iter().enumerate().map(equation).collect();
+        let text = format!("{}initial {}", drawn.text, initial.join(", "));
         let (at_least, at_most, _) = rank(&text);
-        let shown = by_series(&rates, &output, &initial, constants, &mut rng);
+        let begin = drawn.initial.iter().map(|value| Begin::Known(*value));
+        let begin: Vec<Begin> = begin.chain(vec![Begin::Any; drawn.constants]).collect();
+        let shown = by_series(&drawn.rates, &drawn.output, &begin, &mut rng);
         assert!(at_least <= shown && shown <= at_most, "{text}\nfrom {at_least} to {at_most}, and {shown}");
         if at_least == at_most {
             decided += 1;
-            low += usize::from(shown < constants);
+            low += usize::from(shown < drawn.constants);
             late += usize::from(shown > 0);
         }
     }
     println!("{decided} of {all} decided, {low} below full rank, {late} above nought");
     // where all of an orbit is special, as where two amounts begin at nought and grow with each other, nothing is said
     assert!(decided * 100 >= all * 98 && low >= 80 && late >= 80, "{decided} of {all}, {low} {late}");
+}
+
+/// The same where all states are asked for too, at those states at which some of them are nought.
+#[test]
+fn drawn_systems_on_sets() {
+    let mut rng = ChaCha8Rng::seed_from_u64(4);
+    let (mut decided, mut low, mut all) = (0, 0, 0);
+    for _ in 0..400 {
+        let Some(drawn) = drawn(&mut rng) else { continue };
+        let noughts: Vec<usize> =
+            (0..drawn.initial.len()).filter(|place| drawn.initial[*place] == 0).collect();
+        if noughts.is_empty() {
+            continue;
+        }
+        all += 1;
+        let mut system: System = format!("system \"s\" {}", drawn.text).parse().unwrap();
+        let conditions = noughts.iter().map(|place| format!("x{place} = 0")).collect();
+        let question = RankQuestion { samples: 0, conditions, ..RankQuestion::default() };
+        let answer = answer_rank(&mut system, &question).unwrap();
+        let generic = &answer.branches[0].generic;
+        let begin = (0..drawn.initial.len()).map(|place| match noughts.contains(&place) {
+            true => Begin::At(0),
+            false => Begin::Any,
+        });
+        let begin: Vec<Begin> = begin.chain(vec![Begin::Any; drawn.constants]).collect();
+        let shown = by_series(&drawn.rates, &drawn.output, &begin, &mut rng);
+        let text = format!("{}\n{noughts:?} are nought", drawn.text);
+        let (at_least, at_most) = (generic.at_least, generic.at_most);
+        assert!(at_least <= shown && shown <= at_most, "{text}\nfrom {at_least} to {at_most}, and {shown}");
+        decided += usize::from(at_least == at_most);
+        low += usize::from(at_least == at_most && shown < begin.len());
+    }
+    println!("{decided} of {all} decided, {low} below full rank");
+    assert!(decided * 100 >= all * 80 && low >= 80, "{decided} of {all}, {low}");
 }

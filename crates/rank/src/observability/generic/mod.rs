@@ -193,6 +193,9 @@ fn on_orbits(
     rng: &mut ChaCha8Rng,
 ) -> Option<(GenericAnswer, Vec<Seen>)> {
     let (probe, around) = orbit::probes(system, conditions, asked);
+    if !functions_are_known(&probe.equations) || !functions_are_known(&around.equations) {
+        return None;
+    }
     let orbit = probe.orbit(&around, rng).ok()?;
     let bounds = bound::rounds(&probe.equations, orbit.last.iter().max().map_or(1, |most| most + 1));
     let mut best = (0, vec![false; answer.dimension + asked.len()]);
