@@ -1,6 +1,7 @@
 //! Words of Lie derivatives where all of an order are too many: only those that raise the rank are taken, and continued.
 
 use super::codistribution::{Codistribution, Word};
+use super::evaluated_rows::EvaluatedRows;
 use super::needed::{CodistributionError, needed};
 use super::saturation::Stop;
 use super::series::lie_derivative_by_series;
@@ -32,6 +33,7 @@ impl Codistribution {
         let mut chain: Vec<Link> = Vec::new();
         let outputs = (0..system.outputs.len()).map(|output| Word { fields: Vec::new(), output });
         let mut candidates: Vec<Word> = outputs.collect();
+        let mut evaluated = EvaluatedRows::new(system);
         let (mut stop, mut taken) = (Stop::NoGrowth, None);
         while !candidates.is_empty() {
             let before = chain.len();
@@ -49,7 +51,19 @@ impl Codistribution {
                 chain.push(Link { word, value, row });
             }
             let rows: Vec<Vec<NodeId>> = chain.iter().map(|link| link.row.clone()).collect();
-            let (raising, guessed) = needed(system, &rows, conditions)?;
+            let of_points = evaluated.as_mut().and_then(|evaluated| {
+                evaluated.push(&system.graph, &rows[before..], conditions)?;
+                let raising = evaluated.independent()?;
+                evaluated.keep(&raising);
+                Some((raising, false))
+            });
+            let (raising, guessed) = match of_points {
+                Some(found) => found,
+                None => {
+                    evaluated = None;
+                    needed(system, &rows, conditions)?
+                }
+            };
             chain = raising.iter().map(|place| chain[*place].clone()).collect();
             let found = self.of_chain(system, conditions, &chain, guessed)?;
             let rank = found.needed.len();

@@ -194,7 +194,13 @@ impl Codistribution {
         let longest = system.longest_word().map_or(longest, |limit| longest.min(limit));
         let mut result = Codistribution::without_words(frame);
         result.stop = Stop::Order;
-        let (mut with_all, mut closed_rank) = (Vec::new(), 0);
+        // below the order of the last derivative that tells something no rank is at its end
+        let first = match length {
+            Length::UntilItStops if result.generic.open.is_none() => result.generic.order,
+            Length::UntilItStops => 0,
+            Length::Exactly(order) => order,
+        };
+        let (mut with_all, mut closed_rank, mut looked_at) = (Vec::new(), 0, 0);
         let mut last: Vec<(Word, NodeId)> = (0..system.outputs.len())
             .map(|output| (Word { fields: Vec::new(), output }, system.outputs[output].1))
             .collect();
@@ -222,12 +228,12 @@ impl Codistribution {
                 result.rows.push(row);
             }
             result.order = order;
+            if order < first && !last.is_empty() {
+                continue;
+            }
             let below = closed_rank;
-            (result.needed, result.guessed) = needed(system, &result.rows, conditions)?;
-            closed_rank = match closed.len() > dimension {
-                true => needed(system, &with_all, conditions)?.0.len(),
-                false => result.needed.len(),
-            };
+            closed_rank = result.look(system, conditions, &with_all)?;
+            looked_at = result.words.len();
             let growth = RankGrowth { order, below, up_to: closed_rank };
             let stop = saturation.stop(growth, result.needed.len());
             match length {
@@ -241,6 +247,9 @@ impl Codistribution {
             }
             break;
         }
+        if looked_at < result.words.len() {
+            result.look(system, conditions, &with_all)?;
+        }
         let missing = result.generic.at_least > result.needed.len();
         let cut_off = system.longest_word().is_some();
         if length == Length::UntilItStops
@@ -252,6 +261,20 @@ impl Codistribution {
             result.take_by_need(system, conditions, &fields)?;
         }
         Ok(result)
+    }
+
+    /// Which of the words that were taken are needed; the rank by all coordinates that move, of which `with_all` has the rows where not all of them are unknown.
+    fn look(
+        &mut self,
+        system: &mut System,
+        conditions: &Assignment,
+        with_all: &[Vec<NodeId>],
+    ) -> Result<usize, CodistributionError> {
+        (self.needed, self.guessed) = needed(system, &self.rows, conditions)?;
+        match with_all.is_empty() {
+            true => Ok(self.needed.len()),
+            false => Ok(needed(system, with_all, conditions)?.0.len()),
+        }
     }
 
     /// Whether the words that were taken show less than is there: those that are missing were too long, or too many, to be written.

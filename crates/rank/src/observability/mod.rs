@@ -14,6 +14,7 @@ mod defined;
 mod driven;
 mod elimination;
 mod equilibrate;
+mod evaluated_rows;
 mod fibre;
 mod flow;
 mod generic;
