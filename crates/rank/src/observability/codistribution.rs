@@ -194,9 +194,11 @@ impl Codistribution {
         let longest = system.longest_word().map_or(longest, |limit| longest.min(limit));
         let mut result = Codistribution::without_words(frame);
         result.stop = Stop::Order;
-        // below the order of the last derivative that tells something no rank is at its end
+        // below the order of the last derivative that tells something no rank is at its end; with inputs words may tell it in fewer fields
         let first = match length {
-            Length::UntilItStops if result.generic.open.is_none() => result.generic.order,
+            Length::UntilItStops if result.generic.open.is_none() && fields.len() == 1 => {
+                result.generic.order
+            }
             Length::UntilItStops => 0,
             Length::Exactly(order) => order,
         };
