@@ -134,6 +134,20 @@ fn designs_are_those_of_the_ranks_of_all_files() {
     assert_eq!(without, expected);
 }
 
+/// Where an amount begins at nought nothing is told of what moves it by itself: a set that would suffice from elsewhere does not, and a larger one is found.
+#[test]
+fn initial_conditions_count() {
+    let text = "state x, y param a, k unknown initial x = 0 drift f x' = a*x y' = k output y";
+    let never = AtomicBool::new(false);
+    let question =
+        DesignQuestion { targets: vec!["a".to_owned()], ..DesignQuestion::of(Path::new(""), &never) };
+    let answer = design(&read(text), &question).unwrap();
+    // measuring x tells a from everywhere but where it stays nought; an input moves it from there
+    assert!(answer.contradicted > 0 && answer.open.is_none(), "{answer:?}");
+    let sets: Vec<Vec<Addition>> = answer.designs.iter().map(|design| design.additions.clone()).collect();
+    assert_eq!(sets, [vec![Addition::Output("x".to_owned()), Addition::Input("x".to_owned())]]);
+}
+
 /// What cannot be answered is named, and what is cut off says so.
 #[test]
 fn limits_are_named() {
@@ -152,6 +166,13 @@ fn limits_are_named() {
     let stopped = AtomicBool::new(true);
     let answer = design(&read(TWO), &DesignQuestion::of(Path::new(""), &stopped)).unwrap();
     assert!(answer.designs.is_empty() && answer.open.as_deref() == Some("it was interrupted"), "{answer:?}");
+    // with too little work for values the sets are undecided, and not said to be none
+    let exchanged = "state x, y, z param a, b, c, d unknown drift f x' = -(a + b)*x + c*y + d*z y' = a*x - c*y z' = b*x - d*z \
+                     input u x' = 1 others' = 0 output x";
+    let idle = AtomicBool::new(false);
+    let question = DesignQuestion { globally: true, work: 10, ..DesignQuestion::of(Path::new(""), &idle) };
+    let answer = design(&read(exchanged), &question).unwrap();
+    assert!(answer.designs.is_empty() && answer.open.is_some(), "{answer:?}");
     // a definition that counts the columns is of one experiment alone
     let counted =
         "state x, y param a unknown drift f x' = 0 y' = 0 let D = det([d(x); d(y); d(a)]) output x + a*y";

@@ -249,24 +249,32 @@ fn answered(system: &System, question: &DesignQuestion<'_>) -> Result<DesignAnsw
     let additions = Additions::of(system, question, &wanted);
     answer.candidates = additions.count();
     let mut search = Search::new(system, question, &wanted, additions);
+    let mut undecided = (0, None);
     for size in 1..=question.at_most {
-        let Sets { sets, open } = search.of_size(size, &mut |set| {
-            if !question.globally {
-                return true;
+        let mut proofs = Vec::new();
+        // what is decided anew counts, and not the one random point: where a set does not suffice a larger one may
+        let mut is_enough = |set: &[Addition]| match judge.proof(system, set) {
+            Proof::Proved(log2_error) => {
+                proofs.push(Some(log2_error));
+                true
             }
-            let judged = variant::with(system, question, set).ok().and_then(|there| judge.judged(there).ok());
-            judged.is_some_and(|judged| judged.is_met())
-        });
-        for set in sets {
-            match judge.proof(system, &set) {
-                Proof::Proved(log2_error) => {
-                    answer.designs.push(Design { additions: set, log2_error: Some(log2_error) });
-                }
-                Proof::Computed => answer.designs.push(Design { additions: set, log2_error: None }),
-                // what is decided anew counts, and not the one random point
-                Proof::Refuted => answer.contradicted += 1,
+            Proof::Computed => {
+                proofs.push(None);
+                true
             }
-        }
+            Proof::NotMet { is_local } => {
+                answer.contradicted += usize::from(is_local);
+                false
+            }
+            Proof::Undecided(why) => {
+                undecided.0 += 1;
+                undecided.1.get_or_insert(why);
+                false
+            }
+        };
+        let Sets { sets, open } = search.of_size(size, &mut is_enough);
+        let designs = sets.into_iter().zip(proofs);
+        answer.designs.extend(designs.map(|(additions, log2_error)| Design { additions, log2_error }));
         if open.is_some() {
             answer.open = open;
             break;
@@ -274,6 +282,11 @@ fn answered(system: &System, question: &DesignQuestion<'_>) -> Result<DesignAnsw
         answer.looked_at = size;
     }
     answer.left_out = search.left_out();
+    if let (sets, Some(why)) = &undecided
+        && answer.open.is_none()
+    {
+        answer.open = Some(format!("of {sets} among them it is undecided whether they suffice: {why}"));
+    }
     if question.interrupt.load(Ordering::Relaxed) && answer.looked_at < question.at_most {
         answer.open = Some("it was interrupted".to_owned());
     }
@@ -299,8 +312,10 @@ enum Proof {
     Proved(f64),
     /// One of the two is computed.
     Computed,
-    /// It does not suffice.
-    Refuted,
+    /// Nobody knows whether it suffices, and why.
+    Undecided(String),
+    /// It does not suffice: not even locally, or it leaves several values.
+    NotMet { is_local: bool },
 }
 
 impl Judged {
@@ -381,8 +396,16 @@ impl Judge<'_> {
         let question = self.question;
         let mut with = |set: &[Addition]| self.judged(variant::with(system, question, set).ok()?).ok();
         let Some(whole) = with(set) else { return Proof::Computed };
-        if whole.is_refuted() {
-            return Proof::Refuted;
+        let undecided = whole.solutions.iter().flatten().find_map(|solutions| match solutions {
+            Solutions::Undecided(why) => Some(why.clone()),
+            _ => None,
+        });
+        if let Some(why) = undecided {
+            return Proof::Undecided(why);
+        }
+        let is_local = whole.seen.contains(&Seen::No);
+        if is_local || (question.globally && !whole.is_met()) {
+            return Proof::NotMet { is_local };
         }
         let mut errors = vec![whole.log2_error];
         match whole.one {

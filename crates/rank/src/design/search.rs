@@ -159,7 +159,7 @@ impl<'a> Search<'a> {
         let measured = |one: &&Addition| matches!(one, Addition::Output(_) | Addition::Known(_));
         additions.extend(self.additions.rows.iter().filter(measured).cloned());
         let all = with(self.system, self.question, &additions)?;
-        // initial conditions that the file gives are met by what is drawn at almost all states; here they are left open
+        // initial conditions that the file gives are left open: at these states no more is seen than at almost all
         let probe = Probe::new(&all, &Assignment::new());
         let OutputRows { field, rows: mut of_outputs } = probe.output_rows(&mut self.rng)?;
         let names = all.column_names();

@@ -137,19 +137,16 @@ pub fn design_text(answer: &DesignAnswer) -> String {
         let _ = writeln!(out, "  {text:<width$}  {proved}", proved = proof);
     }
     let all = counted(answer.candidates, "single addition");
+    let up_to = counted(answer.looked_at, "addition");
     match (&answer.open, answer.designs.is_empty()) {
-        (Some(why), _) if answer.looked_at == 0 => {
-            let _ = writeln!(out, "{all}; not all was looked at: {why}");
-        }
         (Some(why), _) => {
-            let up_to = counted(answer.looked_at, "addition");
-            let _ = writeln!(out, "{all}; all sets of up to {up_to} were looked at, larger ones not: {why}");
+            let _ = writeln!(out, "{all}; sets of up to {up_to} were looked at, and not all is known: {why}");
         }
-        (None, none) => {
-            let up_to = counted(answer.looked_at, "addition");
-            let found = if none { "no set of up to" } else { "all sets of up to" };
-            let end = if none { "suffices; --at-most looks for larger ones" } else { "were looked at" };
-            let _ = writeln!(out, "{all}; {found} {up_to} {end}");
+        (None, true) => {
+            let _ = writeln!(out, "{all}; no set of up to {up_to} suffices; --at-most looks for larger ones");
+        }
+        (None, false) => {
+            let _ = writeln!(out, "{all}; all sets of up to {up_to} were looked at");
         }
     }
     if answer.contradicted > 0 {
