@@ -344,7 +344,7 @@ class System:
         """What to measure or to know besides, so that unknowns become identifiable: all minimal sets of additions, smallest first. `palmistry advise --identify`.
 
         identify: the unknowns; all of them where none is named. globally: one value for each, and not finitely many. by: what may be added, of 'outputs', 'known', 'initial', 'inputs',
-        'experiments'; all but 'initial' unless given. measure: expressions that can be measured; the unknown states unless given. at_most: sets of no more additions are looked for.
+        'experiments'; all but 'initial' unless given. measure: expressions that can be measured; the states unless given. at_most: sets of no more additions are looked for.
 
         >>> scaled = palmistry.System.parse('system "s" state x param k unknown, s unknown drift f x\\' = -k*x output s*x')
         >>> scaled.design("s").sets

@@ -45,7 +45,7 @@ pub(crate) struct Advise {
     /// With --identify: what may be added; outputs, known, inputs and experiments unless given.
     #[arg(long, value_enum, value_name = "KIND,...", value_delimiter = ',', requires = "identify")]
     pub(super) by: Vec<By>,
-    /// With --identify: an expression that can be measured (may be repeated); each unknown state unless given.
+    /// With --identify: an expression that can be measured (may be repeated); each state unless given.
     #[arg(long, value_name = "EXPRESSION", requires = "identify")]
     pub(super) measure: Vec<String>,
     /// With --identify: sets of no more additions are looked for.

@@ -23,7 +23,7 @@ impl From<Wanted> for Certainty {
 /// Kinds of additions, as they are named on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum By {
-    /// Further outputs: the unknown states, or what --measure names.
+    /// Further outputs: the states, or what --measure names.
     Outputs,
     /// Parameters that are known.
     Known,

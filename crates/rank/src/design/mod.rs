@@ -58,7 +58,7 @@ pub struct DesignQuestion<'a> {
     pub targets: Vec<String>,
     /// What may be added.
     pub kinds: Vec<AdditionKind>,
-    /// What can be measured, in the notation of the language; each unknown state where nothing is said.
+    /// What can be measured, in the notation of the language; each state where nothing is said.
     pub measurable: Option<Vec<String>>,
     /// Sets of no more additions are looked for.
     pub at_most: usize,

@@ -28,10 +28,16 @@ impl Additions {
             of_kind.map(|(name, _)| name.clone()).collect()
         };
         let states = named(UnknownKind::State);
+        // what is known at the beginning alone can be measured, too
+        let known_at_first =
+            system.closed_coordinates().into_iter().filter(|state| system.known.contains(state));
+        let known_at_first = known_at_first.map(|state| system.symbol_name(state).to_owned());
+        let of_first = known_at_first.filter(|name| !name.contains('@'));
+        let moving: Vec<String> = states.iter().cloned().chain(of_first).collect();
         let mut rows = Vec::new();
         if has(AdditionKind::Outputs) {
             let measured: BTreeSet<&str> = system.outputs.iter().map(|(text, _)| text.as_str()).collect();
-            let measurable = question.measurable.as_ref().unwrap_or(&states);
+            let measurable = question.measurable.as_ref().unwrap_or(&moving);
             let new = measurable.iter().filter(|text| !measured.contains(text.as_str()));
             rows.extend(new.cloned().map(Addition::Output));
         }
@@ -54,7 +60,7 @@ impl Additions {
             })
         };
         let inputs = match has(AdditionKind::Inputs) {
-            true => states.iter().filter(|name| moved(name)).cloned().map(Addition::Input).collect(),
+            true => moving.iter().filter(|name| moved(name)).cloned().map(Addition::Input).collect(),
             false => Vec::new(),
         };
         let has_experiments = has(AdditionKind::Experiments) && !says_experiments(system);
