@@ -4,7 +4,7 @@ use crate::common::{folder, json, palmistry, write};
 use nalgebra::{DMatrix, DVector};
 use palmistry::System;
 use palmistry::expression::{NodeId, Program, gradient};
-use palmistry::number::Floats;
+use palmistry::number::{Floats, MOST_ITERATIONS};
 use palmistry::observability::IdentifiableFunctions;
 use palmistry::sweep::{SolutionsWanted, answer_solutions};
 use rand::{RngExt, SeedableRng};
@@ -128,7 +128,7 @@ impl InDoubles {
             if left.iter().zip(goal.iter()).all(|(left, goal)| left.abs() < 1e-11 * (1.0 + goal.abs())) {
                 return Some(here);
             }
-            let step = slopes.svd(true, true).solve(&left, 1e-11).ok()?;
+            let step = slopes.try_svd(true, true, f64::EPSILON, MOST_ITERATIONS)?.solve(&left, 1e-11).ok()?;
             let length = step.norm();
             here += step * if length > 1.0 { 1.0 / length } else { 1.0 };
         }

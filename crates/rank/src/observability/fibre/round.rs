@@ -183,6 +183,9 @@ pub(super) fn random_fibre(
 /// What nobody should ever read.
 const ASTRAY: &str = "a random point does not lie on its own fibre";
 
+/// A polynomial in the variables of an algebra: of each term the powers of variables, by their places, and the coefficient.
+pub(super) type Element = Vec<(Vec<(usize, u16)>, u64)>;
+
 /// The functions on the points of a fibre: what was solved, and the algebra of what is left.
 pub(super) struct Functions {
     solved: Solved,
@@ -233,7 +236,7 @@ impl Functions {
     ///
     /// # Errors
     /// Where a variable has any value.
-    pub fn element(&self, jet: Jet) -> Result<Vec<(Vec<(usize, u16)>, u64)>, NoRound> {
+    pub fn element(&self, jet: Jet) -> Result<Element, NoRound> {
         let mut polynomial = Vec::new();
         for (monomial, coefficient) in &jet.terms {
             let powers: Option<Vec<(usize, u16)>> =

@@ -9,7 +9,7 @@ use super::exact::Exact;
 use super::jets::Jet;
 use super::model::{Model, Motion};
 use super::point::Held;
-use super::round::{Course, Functions, NoRound, by_ways, random_fibre};
+use super::round::{Course, Element, Functions, NoRound, by_ways, random_fibre};
 use crate::observability::generic::{Orders, Probe};
 use palmistry_lang::{Assignment, System};
 use palmistry_math::expression::{Input, NodeId};
@@ -46,8 +46,6 @@ pub(in crate::observability) struct Slice {
     images: Vec<Element>,
     pub own: Vec<u64>,
 }
-
-type Element = Vec<(Vec<(usize, u16)>, u64)>;
 
 /// More terms than this are not multiplied out.
 const MOST_TERMS: usize = 20_000;
