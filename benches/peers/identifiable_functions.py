@@ -15,7 +15,7 @@ import tempfile
 from pathlib import Path
 
 import sympy as sp
-from solutions import PRIME, TooSlow, give_up, modulo, random_system, rank, text_of
+from solutions import PRIME, TooSlow, at_random, give_up, kept_and_held, modulo, random_system, text_of
 
 
 def random_compartments(rng):
@@ -78,20 +78,10 @@ def fibre(functions, point, held, free):
 
 def check(system, functions, generate_all, rng):
     """What differs, in words, or nothing."""
-    states, constants, rates, output = system
-    names = list(states) + list(constants)
-    words = [output]
-    for _ in names:
-        words.append(sp.together(sum(sp.diff(words[-1], s) * r for s, r in zip(states, rates))))
+    names, words, point, rows = at_random(system, rng)
     words = [word for word in words if word.free_symbols]
-    point = {name: rng.randint(1, PRIME - 1) for name in names}
-    rows = [[modulo(sp.diff(word, name), point) for name in names] for word in words]
-    kept = []
-    for k in range(len(names)):
-        if rank(rows, kept + [k]) > len(kept):
-            kept.append(k)
+    kept, held = kept_and_held(names, rows)
     free = [names[k] for k in kept]
-    held = [names[k] for k in range(len(names)) if k not in kept]
     elsewhere = {name: rng.randint(1, PRIME - 1) for name in held}
     basis, variables = fibre(words, point, elsewhere, free)
     for function in functions:

@@ -59,22 +59,32 @@ def rank(rows, columns):
     return matrix.rank()
 
 
-def theirs(system, rng):
+def at_random(system, rng):
+    """The unknowns, one Lie derivative more than there are unknowns, a random point, and the gradients there."""
     states, constants, rates, output = system
     names = list(states) + list(constants)
     words = [output]
     for _ in names:
         words.append(sp.together(sum(sp.diff(words[-1], s) * r for s, r in zip(states, rates))))
     point = {name: rng.randint(1, PRIME - 1) for name in names}
-    rows = [[modulo(sp.diff(word, name), point) for name in names] for word in words]
-    full = rank(rows, range(len(names)))
-    seen = [rank(rows, [c for c in range(len(names)) if c != k]) < full for k in range(len(names))]
-    held, kept = [], []
+    return names, words, point, [[modulo(sp.diff(word, name), point) for name in names] for word in words]
+
+
+def kept_and_held(names, rows):
+    """The places of unknowns that the others are functions of the outputs with, and the others, which are held."""
+    kept = []
     for k in range(len(names)):
         if rank(rows, kept + [k]) > len(kept):
             kept.append(k)
-        else:
-            held.append(names[k])
+    return kept, [names[k] for k in range(len(names)) if k not in kept]
+
+
+def theirs(system, rng):
+    rates = system[2]
+    names, words, point, rows = at_random(system, rng)
+    full = rank(rows, range(len(names)))
+    seen = [rank(rows, [c for c in range(len(names)) if c != k]) < full for k in range(len(names))]
+    kept, held = kept_and_held(names, rows)
     free = [names[k] for k in kept]
     inverse = sp.Symbol("inverse")
     equations, bottoms = [], {sp.Integer(1)}

@@ -89,6 +89,10 @@ impl Advise {
         if !self.identify.is_empty() {
             return self.run_system(&self.identify);
         }
+        if self.file.extension().is_some_and(|extension| extension == "proof") {
+            let help = "name unknowns of a proof file, as in --identify k1,k2 or --identify all; a scene is a TOML file";
+            return Err(Unusable::report("what is to be identified in this proof file is not said", help));
+        }
         if let Some(scene) = SpaceScene::read(&self.file) {
             return self.run_space(scene?);
         }

@@ -6,7 +6,7 @@ use super::output::{Files, Form, progress};
 use super::reparametrise::reparametrisation;
 use super::shards::{NO_WHOLE, Parts, Shards};
 use super::{Status, Unusable};
-use clap::Args;
+use clap::{ArgGroup, Args};
 use miette::Report;
 use palmistry::checker::VerdictFile;
 use palmistry::drops::{DropAnswer, where_it_drops_telling};
@@ -38,6 +38,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// defines a matrix named 'rows', its rank is decided at the same states too. Parameters without a range have the values of
 /// the file, and the answer says which, as it says from where it draws what has neither; a claim 'rank = n' in a file is about all values.
 #[derive(Args)]
+#[command(group(ArgGroup::new("counted").args(["global", "functions"]).multiple(true)))]
 #[command(after_help = "Examples:
   palmistry rank mysystem.proof --samples 100000
   palmistry rank mysystem.proof --at omega0=0              on the set where omega0 is zero
@@ -112,7 +113,7 @@ pub(crate) struct Rank {
     #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "accessible", "where_it_drops", "reparametrise", "shard", "merge", "missing"])]
     functions: bool,
     /// With '--global' and '--functions': how much work may be done, in products of residues; what takes more is undecided.
-    #[arg(long, default_value_t = SOLUTIONS_WORK, value_name = "N", conflicts_with_all = ["samples", "order", "at", "conditions", "accessible", "where_it_drops"])]
+    #[arg(long, default_value_t = SOLUTIONS_WORK, value_name = "N", requires = "counted")]
     work: u64,
     /// Write a row for each sampled state to a file, CSV or Parquet by its extension: index, rank, certified, smallest singular value,
     /// condition. With '--shard' those of its states.

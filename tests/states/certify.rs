@@ -521,25 +521,30 @@ fn interrupts_at_any_box_change_nothing() {
     };
     whole.run(Limits { seconds: None, boxes: Some(BOXES) }, &false.into(), &tell);
     assert_eq!(whole.boxes(), BOXES);
-    let (mut region, mut runs) = (begun(), 0);
-    while region.boxes() < BOXES {
-        runs += 1;
-        let interrupt = AtomicBool::new(false);
-        let limits = Limits { seconds: None, boxes: Some(BOXES - region.boxes()) };
-        std::thread::scope(|scope| {
-            scope.spawn(|| {
-                std::thread::sleep(Duration::from_micros(100 << (runs / 2)));
-                interrupt.store(true, Ordering::Relaxed);
+    let interrupted = || {
+        let (mut region, mut runs) = (begun(), 0);
+        while region.boxes() < BOXES {
+            runs += 1;
+            let interrupt = AtomicBool::new(false);
+            let limits = Limits { seconds: None, boxes: Some(BOXES - region.boxes()) };
+            std::thread::scope(|scope| {
+                scope.spawn(|| {
+                    std::thread::sleep(Duration::from_micros(100 << (runs / 2)));
+                    interrupt.store(true, Ordering::Relaxed);
+                });
+                region.run(limits, &interrupt, &|_| ());
             });
-            region.run(limits, &interrupt, &|_| ());
-        });
-        assert!(
-            blocks.lock().unwrap().contains(&region.boxes()),
-            "{} boxes are no whole blocks",
-            region.boxes()
-        );
-    }
-    assert!(runs > 2, "{runs} runs");
+            assert!(
+                blocks.lock().unwrap().contains(&region.boxes()),
+                "{} boxes are no whole blocks",
+                region.boxes()
+            );
+        }
+        (region, runs)
+    };
+    // beside other work an interrupt may come after the end
+    let often = (0..10).map(|_| interrupted()).find(|(_, runs)| *runs > 2);
+    let (region, _) = often.expect("a search that was interrupted more than once");
     assert_eq!(told(&region), told(&whole));
     // an interrupt leaves the answer what is proved, and explains the largest boxes alone
     let (all, some) = (region.answer(), region.answer_until(&true.into()));

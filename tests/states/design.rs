@@ -148,6 +148,68 @@ fn initial_conditions_count() {
     assert_eq!(sets, [vec![Addition::Output("x".to_owned()), Addition::Input("x".to_owned())]]);
 }
 
+/// A parameter has the value of the file, as for a rank: with nought before it a state is not seen.
+#[test]
+fn parameters_are_held_as_for_a_rank() {
+    let with =
+        |parameter: &str| format!("state x, y param {parameter} drift f x' = -x y' = y output x + k*y");
+    let never = AtomicBool::new(false);
+    let question =
+        || DesignQuestion { targets: vec!["y".to_owned()], ..DesignQuestion::of(Path::new(""), &never) };
+    let held = design(&read(&with("k = 0")), &question()).unwrap();
+    assert!(!held.is_met && held.held.len() == 1, "{held:?}");
+    let sets: Vec<_> = held.designs.iter().map(|design| design.additions.clone()).collect();
+    assert_eq!(sets, [vec![Addition::Output("y".to_owned())]]);
+    // and where the file says nothing any value
+    let free = design(&read(&with("k")), &question()).unwrap();
+    assert!(free.is_met && free.held.is_empty(), "{free:?}");
+}
+
+/// Components of vectors are states as any; names that a file has are not taken for inputs; and what stands behind an expression is no line of its own.
+#[test]
+fn what_is_added_is_one_line_and_has_a_name_of_its_own() {
+    let scaled = "state x[1..2] param k, s unknown drift f x[i]' = -k*x[i] for i in 1..2 output s*x[1]";
+    assert_eq!(sets(scaled, &["s"], |_| ()), ["output x[1]", "input x[1]"]);
+    let taken = "state x param k, s, into_x_0 unknown drift f x' = -k*x output s*x";
+    assert_eq!(sets(taken, &["s"], |_| ()), ["output x", "input x"]);
+    let ask = |text: &str, measure: &str| {
+        let never = AtomicBool::new(false);
+        let question = DesignQuestion {
+            measurable: Some(vec![measure.to_owned()]),
+            kinds: vec![AdditionKind::Outputs, AdditionKind::Inputs],
+            ..DesignQuestion::of(Path::new(""), &never)
+        };
+        design(&read(text), &question).unwrap()
+    };
+    let answer = ask("state x param k, s unknown drift f x' = -k*x output s*x", "x initial x = 1");
+    assert!(
+        answer.designs.iter().all(|one| one.additions == [Addition::Input("x".to_owned())]),
+        "{answer:?}"
+    );
+    assert_eq!(answer.left_out.len(), 1, "{answer:?}");
+    // all names are in the file, in a comment: named, and at once
+    let comment: String = (0..100).map(|number| format!(" into_x_{number}")).collect();
+    let full = format!("state x param k, s unknown drift f x' = -k*x output s*x #{comment}");
+    let answer = ask(&full, "x");
+    assert!(answer.left_out.iter().any(|(_, why)| why.contains("has all names")), "{answer:?}");
+}
+
+/// Three further experiments are among sets of three; of functions that may satisfy relations no set is said to suffice.
+#[test]
+fn experiments_and_functions() {
+    // each experiment is one equation for three constants and an unknown beginning that is seen
+    let line = "state x param a, b, c unknown drift f x' = 0 output x, a*x^2 + b*x + c";
+    let experiments = |question: &mut DesignQuestion<'_>| question.kinds = vec![AdditionKind::Experiments];
+    assert_eq!(sets(line, &["a"], experiments), ["experiment, experiment"]);
+    let cubic = "state x param a, b, c, d unknown drift f x' = 0 output x, a*x^3 + b*x^2 + c*x + d";
+    assert_eq!(sets(cubic, &["a"], experiments), ["experiment, experiment, experiment"]);
+    let power = "state x, y param n, k unknown drift f x' = -k*x^n y' = 0 output x*y";
+    let never = AtomicBool::new(false);
+    let answer = design(&read(power), &DesignQuestion::of(Path::new(""), &never)).unwrap();
+    let undecided = answer.designs.iter().any(|design| design.log2_error.is_none());
+    assert!(!undecided, "{answer:?}");
+}
+
 /// What cannot be answered is named, and what is cut off says so.
 #[test]
 fn limits_are_named() {
@@ -163,13 +225,26 @@ fn limits_are_named() {
     assert!(why.contains("'d' is no unknown") && why.contains("x, y, a, b, c"), "{why}");
     assert!(ask("state x drift f x' = 0", &[]).unwrap_err().to_string().contains("no outputs"));
     assert!(ask("state x drift f x' = x output x", &[]).unwrap().is_met);
+    let steps = ask("state x, y param k unknown drift f x+ = k*y y+ = x*y output x", &["k"]);
+    assert!(steps.unwrap_err().to_string().contains("goes in steps"));
+    let idle = AtomicBool::new(false);
+    for at_most in [0, 9, usize::MAX] {
+        let question = DesignQuestion { at_most, ..DesignQuestion::of(Path::new(""), &idle) };
+        assert!(design(&read(TWO), &question).unwrap_err().to_string().contains("sets of 1 to 8"));
+    }
+    // more inputs than choices are looked at: said, and at once
+    let names: Vec<String> = (0..60).map(|place| format!("x{place}")).collect();
+    let rates: String = names.iter().map(|name| format!(" {name}' = {name}^2")).collect();
+    let many = format!("state {} drift f{rates} output x0", names.join(", "));
+    let question = DesignQuestion { at_most: 8, ..DesignQuestion::of(Path::new(""), &idle) };
+    let answer = design(&read(&many), &question).unwrap();
+    assert!(answer.open.as_deref().is_some_and(|why| why.contains("more than")), "{answer:?}");
     let stopped = AtomicBool::new(true);
     let answer = design(&read(TWO), &DesignQuestion::of(Path::new(""), &stopped)).unwrap();
     assert!(answer.designs.is_empty() && answer.open.as_deref() == Some("it was interrupted"), "{answer:?}");
     // with too little work for values the sets are undecided, and not said to be none
     let exchanged = "state x, y, z param a, b, c, d unknown drift f x' = -(a + b)*x + c*y + d*z y' = a*x - c*y z' = b*x - d*z \
                      input u x' = 1 others' = 0 output x";
-    let idle = AtomicBool::new(false);
     let question = DesignQuestion { globally: true, work: 10, ..DesignQuestion::of(Path::new(""), &idle) };
     let answer = design(&read(exchanged), &question).unwrap();
     assert!(answer.designs.is_empty() && answer.open.is_some(), "{answer:?}");
@@ -210,6 +285,9 @@ fn the_command_advises() {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.code() == Some(2) && said.contains(word), "{said}");
     }
+    let bare = palmistry(&["advise", file]);
+    let said = String::from_utf8_lossy(&bare.stderr).into_owned();
+    assert!(bare.status.code() == Some(2) && said.contains("--identify k1,k2"), "{said}");
     // what cannot be read is left out, and said to be
     let output = palmistry(&["advise", file, "--identify", "a", "--measure", "x +", "--measure", "y"]);
     assert!(String::from_utf8_lossy(&output.stdout).contains("left out: measure x +"), "{output:?}");

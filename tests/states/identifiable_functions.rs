@@ -28,7 +28,7 @@ fn texts(found: &IdentifiableFunctions) -> Vec<&str> {
 /// By hand: what one value of an output leaves of unknowns.
 #[test]
 fn functions_by_hand() {
-    let rows: [(&str, &[&str]); 10] = [
+    let rows: [(&str, &[&str]); 12] = [
         ("state x param k unknown drift f x' = k^2*x output x", &["x", "k^2"]),
         ("state x param k unknown drift f x' = k^5*x output x", &["x", "k^5"]),
         ("state x param a, b unknown drift f x' = (a + b)*x + a*b output x", &["x", "a*b", "a + b"]),
@@ -41,6 +41,13 @@ fn functions_by_hand() {
         ("state x param k, s unknown drift f x' = -k*x output s*x experiments 2", &["k", "x*s", "s*x@2"]),
         // what is known stands in a function as a number does
         ("state x param k, s unknown param c known drift f x' = (c - k)*s*x output x", &["x", "s*(k - c)"]),
+        // by a known angle: the square of a component in a frame that is turned
+        (
+            "state x, y param phi known angle phi drift f x' = y y' = -x output (cos(phi)*x + sin(phi)*y)^2",
+            &["x*y", "x^2"],
+        ),
+        // nothing at all
+        ("state x param k unknown drift f x' = -k*x output 2", &[]),
         // an angle by its sine
         ("state q param w unknown angle q drift f q' = w output sin(q)", &["sin(q)", "w*cos(q)"]),
     ];
@@ -251,7 +258,7 @@ fn generators_against_points_of_fibres() {
 #[test]
 fn coefficients_of_drawn_compartments() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
-    let mut several = 0;
+    let (mut several, mut met) = (0, 0);
     for number in 0..30 {
         let size = rng.random_range(2..=3);
         let mut rates = vec![String::new(); size];
@@ -324,11 +331,11 @@ fn coefficients_of_drawn_compartments() {
             met.contains(&0)
         };
         if (0..size).all(reaches) {
-            follow(&system, &texts(&found), &list, &format!("{number}: {text}"));
+            met += follow(&system, &texts(&found), &list, &format!("{number}: {text}"));
             several += 1;
         }
     }
-    assert!(several >= 10, "{several}");
+    assert!(several >= 10 && met >= 100, "{several} systems, {met} points");
 }
 
 #[test]
@@ -358,4 +365,9 @@ fn the_command_tells_generators() {
     let little = palmistry(&["rank", file, "--functions", "--work", "10"]);
     assert_eq!(little.status.code(), Some(3), "{}", String::from_utf8_lossy(&little.stdout));
     assert_eq!(palmistry(&["rank", file, "--functions", "--samples", "3"]).status.code(), Some(2));
+    assert_eq!(palmistry(&["rank", file, "--work", "10"]).status.code(), Some(2));
+    let nothing = write(&folder, "none.proof", "system \"s\" state x drift f x' = -x output 2");
+    let told = palmistry(&["rank", nothing.to_str().unwrap(), "--functions"]);
+    let text = String::from_utf8(told.stdout).unwrap();
+    assert!(text.contains("identifiable functions: none but constants"), "{text}");
 }

@@ -14,9 +14,10 @@ use crate::observability::{
     CodistributionError, Frame, SOLUTIONS_WORK, Seen, Solutions, SolutionsQuestion, solutions,
     solve_conditions,
 };
-use crate::sweep::named_unknowns;
+use crate::sweep::{RankQuestion, held_conditions, held_parameters, named_unknowns};
+use dashu::rational::RBig;
 use palmistry_budget::{Allowance, OF_A_QUESTION, paid};
-use palmistry_lang::{Assignment, System, UnknownKind};
+use palmistry_lang::{Assignment, System, Time, UnknownKind};
 use search::{Search, Sets};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -126,6 +127,8 @@ pub struct DesignAnswer {
     pub targets: Vec<DesignTarget>,
     /// Whether one value was asked for.
     pub globally: bool,
+    /// Parameters that have the values of the file.
+    pub held: Vec<(String, RBig)>,
     /// Whether nothing needs to be added.
     pub is_met: bool,
     /// How many single additions there are to choose from.
@@ -142,10 +145,13 @@ pub struct DesignAnswer {
     pub open: Option<String>,
 }
 
+/// No more additions are looked for at once.
+const MOST_ADDITIONS: usize = 8;
+
 /// Why there is no answer.
 #[derive(Clone, Debug)]
 pub enum DesignError {
-    /// The file has nothing to ask for, or a name is none of its unknowns.
+    /// The file has nothing to ask for, or of a kind of which no designs are made, or a name is none of its unknowns.
     Question(String),
     /// As for the rank.
     Rank(CodistributionError),
@@ -203,6 +209,19 @@ fn answered(system: &System, question: &DesignQuestion<'_>) -> Result<DesignAnsw
     if system.outputs.is_empty() || system.unknown_count() == 0 {
         return Err(DesignError::Question(format!("{} has no unknowns or no outputs", system.name)));
     }
+    let refused = |why: &str| Err(DesignError::Question(why.to_owned()));
+    // which sets suffice is looked for along flows
+    if system.time == Time::Discrete {
+        return refused("designs are made in continuous time alone, and this system goes in steps");
+    }
+    if !system.zero_outputs().is_empty() || system.longest_word().is_some() {
+        return refused(
+            "outputs that are zero tie known signals to states, and of these no designs are made",
+        );
+    }
+    if !(1..=MOST_ADDITIONS).contains(&question.at_most) {
+        return refused(&format!("sets of 1 to {MOST_ADDITIONS} additions are looked for"));
+    }
     let names = system.column_names();
     for name in &question.targets {
         if !names.contains(name) {
@@ -224,6 +243,7 @@ fn answered(system: &System, question: &DesignQuestion<'_>) -> Result<DesignAnsw
     };
     let mut judge = Judge { question, wanted: &wanted, work: 0 };
     let now = judge.judged(system.clone())?;
+    let held = held_parameters(system, &RankQuestion::default(), &Assignment::new(), std::iter::empty());
     let kinds = named_unknowns(system);
     let targets =
         wanted.iter().zip(now.seen.iter().zip(&now.solutions)).filter_map(|(name, (seen, solutions))| {
@@ -235,6 +255,7 @@ fn answered(system: &System, question: &DesignQuestion<'_>) -> Result<DesignAnsw
         title: system.title.clone(),
         targets: targets.collect(),
         globally: question.globally,
+        held,
         is_met: now.is_met(),
         candidates: 0,
         designs: Vec::new(),
@@ -298,6 +319,8 @@ struct Judged {
     seen: Vec<Seen>,
     /// Where one value is asked for.
     solutions: Vec<Option<Solutions>>,
+    /// Why something of the rank is open.
+    open: Option<String>,
     /// The probability of an error in what is seen, and in what is not.
     log2_error: f64,
     /// That there is one value each, where it is proved.
@@ -324,6 +347,24 @@ impl Judged {
             && self.solutions.iter().flatten().all(|solutions| *solutions == Solutions::Finite(1))
     }
 
+    /// Why it is not known whether all of them are identifiable, where none is shown not to be.
+    fn undecided(&self) -> Option<String> {
+        if self.seen.contains(&Seen::No) {
+            return None;
+        }
+        let of_rank = self
+            .seen
+            .contains(&Seen::Undecided)
+            .then(|| self.open.clone().unwrap_or_else(|| "the rank is not known".to_owned()));
+        let of_values = || {
+            self.solutions.iter().flatten().find_map(|solutions| match solutions {
+                Solutions::Undecided(why) => Some(why.clone()),
+                _ => None,
+            })
+        };
+        of_rank.or_else(of_values)
+    }
+
     /// Whether it is shown that one of them is not identifiable.
     fn is_refuted(&self) -> bool {
         self.seen.contains(&Seen::No) || self.has_several
@@ -346,7 +387,8 @@ impl Judge<'_> {
             let why = "initial conditions are given in several ways: of these no design is made";
             return Err(DesignError::Question(why.to_owned()));
         };
-        let conditions: Assignment = branch.values.clone();
+        // parameters have the values that they have for the rank
+        let conditions = held_conditions(&mut system, &RankQuestion::default(), branch);
         let generic = Frame::new(&mut system, &conditions)?.generic;
         let seen = |name: &String| {
             let of_it = generic.unknowns.iter().find(|(symbol, _)| system.symbol_name(*symbol) == name);
@@ -355,6 +397,7 @@ impl Judge<'_> {
         let seen: Vec<Seen> = self.wanted.iter().map(seen).collect();
         let mut judged = Judged {
             solutions: vec![None; seen.len()],
+            open: generic.open.clone(),
             log2_error: generic.log2_error,
             one: None,
             has_several: false,
@@ -394,13 +437,14 @@ impl Judge<'_> {
     /// What proves that a set suffices and that nothing of it can be left out.
     fn proof(&mut self, system: &System, set: &[Addition]) -> Proof {
         let question = self.question;
-        let mut with = |set: &[Addition]| self.judged(variant::with(system, question, set).ok()?).ok();
-        let Some(whole) = with(set) else { return Proof::Computed };
-        let undecided = whole.solutions.iter().flatten().find_map(|solutions| match solutions {
-            Solutions::Undecided(why) => Some(why.clone()),
-            _ => None,
-        });
-        if let Some(why) = undecided {
+        let mut with = |set: &[Addition]| {
+            self.judged(variant::with(system, question, set)?).map_err(|why| why.to_string())
+        };
+        let whole = match with(set) {
+            Ok(whole) => whole,
+            Err(why) => return Proof::Undecided(why),
+        };
+        if let Some(why) = whole.undecided() {
             return Proof::Undecided(why);
         }
         let is_local = whole.seen.contains(&Seen::No);
@@ -411,15 +455,14 @@ impl Judge<'_> {
         match whole.one {
             Some(log2_error) => errors.push(log2_error),
             None if question.globally => return Proof::Computed,
-            None if !whole.is_met() => return Proof::Computed,
             None => {}
         }
         for place in 0..set.len() {
             let others = set.iter().enumerate().filter(|(other, _)| *other != place);
             let fewer: Vec<Addition> = others.map(|(_, one)| one.clone()).collect();
             match with(&fewer) {
-                Some(fewer) if fewer.has_several => {} // certain
-                Some(fewer) if fewer.is_refuted() => errors.push(fewer.log2_error),
+                Ok(fewer) if fewer.has_several => {} // certain
+                Ok(fewer) if fewer.is_refuted() => errors.push(fewer.log2_error),
                 _ => return Proof::Computed,
             }
         }

@@ -3,7 +3,8 @@
 use super::variant::{Additions, with};
 use super::{Addition, DesignQuestion};
 use crate::observability::{OutputRows, Probe, Rows};
-use palmistry_lang::{Assignment, System};
+use crate::sweep::held_constants;
+use palmistry_lang::System;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,6 +14,8 @@ use std::sync::atomic::Ordering;
 const MOST_SETS: u64 = 2_000_000;
 /// Nor more systems with other inputs or more experiments.
 const MOST_SYSTEMS: usize = 600;
+/// Nor rows of more entries in all.
+const MOST_ENTRIES: usize = 50_000_000;
 
 /// The system with inputs and experiments, and the rows of all that can be measured or known besides.
 struct Extended {
@@ -57,7 +60,10 @@ pub(super) struct Search<'a> {
     outputs: BTreeMap<usize, Vec<usize>>,
     left_out: Vec<(Addition, String)>,
     found: Vec<Found>,
+    /// Sets, systems, and entries of rows so far.
     looked_at: u64,
+    prepared: usize,
+    entries: usize,
     rng: ChaCha8Rng,
 }
 
@@ -78,6 +84,8 @@ impl<'a> Search<'a> {
             left_out: Vec::new(),
             found: Vec::new(),
             looked_at: 0,
+            prepared: 0,
+            entries: 0,
             // any fixed seed: what is found is decided anew
             rng: ChaCha8Rng::seed_from_u64(0x6465_7369_676e),
         };
@@ -134,9 +142,15 @@ impl<'a> Search<'a> {
         let costs: &[usize] = if size == 1 { &[0, 1] } else { &[size] };
         for cost in costs {
             for experiments in 0..=self.additions.experiments.min(*cost) {
-                for inputs in subsets(self.additions.inputs.len(), cost - experiments) {
-                    if self.systems.len() >= MOST_SYSTEMS {
-                        return Err(format!("more than {MOST_SYSTEMS} choices of inputs and experiments"));
+                let too_many = || format!("more than {MOST_SYSTEMS} choices of inputs and experiments");
+                let subsets = subsets(self.additions.inputs.len(), cost - experiments);
+                for inputs in subsets.ok_or_else(too_many)? {
+                    if self.is_settled(&inputs, experiments) {
+                        continue;
+                    }
+                    self.prepared += 1;
+                    if self.prepared > MOST_SYSTEMS {
+                        return Err(too_many());
                     }
                     if self.question.interrupt.load(Ordering::Relaxed) {
                         return Err("it was interrupted".to_owned());
@@ -159,8 +173,17 @@ impl<'a> Search<'a> {
         let measured = |one: &&Addition| matches!(one, Addition::Output(_) | Addition::Known(_));
         additions.extend(self.additions.rows.iter().filter(measured).cloned());
         let all = with(self.system, self.question, &additions)?;
+        let columns = all.unknown_count();
+        let room = || format!("rows of more than {MOST_ENTRIES} entries");
+        // no output has more rows than there are unknowns
+        let entries = all.outputs.len().saturating_mul(columns).saturating_mul(columns);
+        if entries > MOST_ENTRIES {
+            return Err(room());
+        }
         // initial conditions that the file gives are left open: at these states no more is seen than at almost all
-        let probe = Probe::new(&all, &Assignment::new());
+        let mut all = all;
+        let held = held_constants(&mut all);
+        let probe = Probe::new(&all, &held);
         let OutputRows { field, rows: mut of_outputs } = probe.output_rows(&mut self.rng)?;
         let names = all.column_names();
         let mut fixed = Rows::new(field, names.len());
@@ -187,6 +210,10 @@ impl<'a> Search<'a> {
         let targets: Vec<usize> = self.wanted.iter().filter_map(place).collect();
         let mut whole = fixed.clone();
         rows.iter().flatten().for_each(|row: &Vec<u64>| whole.add(row.clone()));
+        self.entries += rows.iter().flatten().map(Vec::len).sum::<usize>();
+        if self.entries > MOST_ENTRIES {
+            return Err(room());
+        }
         let system = Extended { inputs, experiments, fixed, rows, targets };
         Ok(whole.has(&system.targets).then_some(system))
     }
@@ -254,6 +281,14 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
+    /// Whether inputs and experiments suffice without anything that is measured or known besides.
+    fn is_settled(&self, inputs: &BTreeSet<usize>, experiments: usize) -> bool {
+        let is_part = |found: &Found| {
+            found.rows.is_empty() && found.experiments <= experiments && found.inputs.is_subset(inputs)
+        };
+        self.found.iter().any(is_part)
+    }
+
     /// Whether a set that suffices is a part of this one.
     fn has_smaller(&self, system: &Extended, chosen: &[usize]) -> bool {
         self.found.iter().any(|found| {
@@ -264,8 +299,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// All subsets of so many elements.
-fn subsets(of: usize, size: usize) -> Vec<BTreeSet<usize>> {
+/// All subsets of a size, where they are no more than systems are looked at.
+fn subsets(of: usize, size: usize) -> Option<Vec<BTreeSet<usize>>> {
     let mut all = vec![BTreeSet::new()];
     for _ in 0..size {
         let longer = |set: &BTreeSet<usize>| {
@@ -273,7 +308,10 @@ fn subsets(of: usize, size: usize) -> Vec<BTreeSet<usize>> {
             let set = set.clone();
             (from..of).map(move |next| set.iter().copied().chain([next]).collect()).collect::<Vec<_>>()
         };
-        all = all.iter().flat_map(longer).collect();
+        all = all.iter().flat_map(longer).take(MOST_SYSTEMS + 1).collect();
+        if all.len() > MOST_SYSTEMS {
+            return None;
+        }
     }
-    all
+    Some(all)
 }

@@ -5,8 +5,8 @@ use crate::sweep::named_unknowns;
 use palmistry_lang::{System, UnknownKind, without_claims};
 use std::collections::BTreeSet;
 
-/// No more experiments are made in all.
-const MOST_EXPERIMENTS: usize = 3;
+/// So many names of an input are tried.
+const NAMES: usize = 100;
 
 /// What can be added, by what it does to a search: rows of its own, or other equations.
 pub(super) struct Additions {
@@ -64,7 +64,7 @@ impl Additions {
             false => Vec::new(),
         };
         let has_experiments = has(AdditionKind::Experiments) && !says_experiments(system);
-        Additions { rows, inputs, experiments: if has_experiments { MOST_EXPERIMENTS - 1 } else { 0 } }
+        Additions { rows, inputs, experiments: if has_experiments { question.at_most } else { 0 } }
     }
 
     pub fn count(&self) -> usize {
@@ -89,10 +89,11 @@ pub(super) fn with(
     let of_inputs = additions.iter().filter(|addition| matches!(addition, Addition::Input(_)));
     for addition in of_inputs {
         let Addition::Input(state) = addition else { continue };
-        let mut name = format!("into_{state}");
-        while system.source.contains(&name) {
-            name.push('_');
-        }
+        // of a component as of a word, and none that stands in the file
+        let word: String = state.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
+        let mut names = (0..NAMES).map(|number| format!("into_{word}_{number}"));
+        let name = names.find(|name| !system.source.contains(name.as_str()));
+        let name = name.ok_or_else(|| format!("the file has all names for an input into {state}"))?;
         text.push_str(&format!("input {name}\n  {state}' = 1\n"));
         if system.states.len() > 1 {
             text.push_str("  others' = 0\n");
@@ -110,7 +111,11 @@ pub(super) fn with(
     // a constant that is known is one that is measured
     for addition in additions {
         if let Addition::Output(expression) | Addition::Known(expression) = addition {
-            text.push_str(&format!("output {expression}\n"));
+            // in brackets nothing else can follow an expression
+            match expression.chars().all(|c| c.is_alphanumeric() || c == '_') {
+                true => text.push_str(&format!("output {expression}\n")),
+                false => text.push_str(&format!("output ({expression})\n")),
+            }
         }
     }
     System::parse(&system.name, &text, question.folder).map_err(|why| why.to_string())

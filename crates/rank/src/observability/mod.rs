@@ -24,6 +24,7 @@ mod needed;
 mod nested;
 mod reduction;
 mod related_rank;
+mod residue_polynomial;
 mod saturation;
 mod series;
 mod signs;

@@ -65,8 +65,15 @@ fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol
     system.symbols().filter_map(held).collect()
 }
 
+/// The parameters that a file gives one value to, with these values; states with a range of no width are none.
+pub(crate) fn held_constants(system: &mut System) -> Assignment {
+    let mut held = held_by_the_file(system, &RankQuestion::default());
+    held.retain(|(symbol, _)| !system.states.contains(symbol));
+    held.into_iter().map(|(symbol, value)| (symbol, system.graph.rational(value))).collect()
+}
+
 /// The values that every state of a branch has.
-pub(super) fn held_conditions(
+pub(crate) fn held_conditions(
     system: &mut System,
     question: &RankQuestion<'_>,
     branch: &Branch,

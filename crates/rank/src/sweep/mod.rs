@@ -37,6 +37,7 @@ pub use accessible::{
     AccessibilityAnswer, AccessibilityBranch, answer_accessibility, answer_accessibility_telling,
 };
 pub use asked::RankQuestion;
+pub(crate) use asked::{held_conditions, held_constants};
 pub use certainty::Certainty;
 #[doc(hidden)]
 pub use deviation::NEARLY_INVISIBLE;
@@ -53,8 +54,8 @@ pub use palmistry_io::parts::PartError;
 pub use part::{MergeError, RankPart, shard_of};
 pub use preparation::{RankPreparation, answer_rank, answer_rank_at_once};
 pub use prepared::sweep;
-pub(crate) use question::named_unknowns;
 pub use question::{BranchAnswer, GenericOnBranch, RankAnswer, RankError, TakenRow};
+pub(crate) use question::{held_parameters, named_unknowns};
 #[doc(hidden)]
 pub use scales::{DrawnStates, MeasuredRows, Scales};
 pub use solutions::{GlobalAnswer, SolutionsWanted, answer_solutions, answer_solutions_telling};

@@ -167,7 +167,7 @@ pub enum RankError {
 }
 
 /// The parameters with a value in the file, and no other from the question, that outputs, fields and own rows mention.
-pub(super) fn held_parameters<'a>(
+pub(crate) fn held_parameters<'a>(
     system: &System,
     question: &RankQuestion<'_>,
     solved: &Assignment,

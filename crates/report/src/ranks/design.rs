@@ -3,6 +3,7 @@
 use super::generic::unknown_verdict;
 use crate::claims::outcomes::error_bound;
 use crate::layout::counted;
+use crate::names::{values_json, values_text};
 use palmistry_io::foreign::shown;
 use palmistry_lang::UnknownKind;
 use palmistry_rank::design::{Addition, Design, DesignAnswer, DesignTarget};
@@ -92,6 +93,7 @@ pub fn design_json(answer: &DesignAnswer) -> Value {
         "file": answer.file,
         "title": answer.title,
         "globally": answer.globally,
+        "held_at_the_files_values": values_json(&answer.held),
         "identify": answer.targets.iter().map(target_json).collect::<Vec<_>>(),
         "is_met": answer.is_met,
         "candidates": answer.candidates,
@@ -108,6 +110,9 @@ pub fn design_json(answer: &DesignAnswer) -> Value {
 pub fn design_text(answer: &DesignAnswer) -> String {
     let mut out = format!("{}: {}\n", shown(&answer.file), answer.title);
     let how = if answer.globally { "globally (one value)" } else { "locally (finitely many values)" };
+    if !answer.held.is_empty() {
+        let _ = writeln!(out, "with {}", values_text(&answer.held));
+    }
     let _ = writeln!(out, "to be identified {how}:");
     let width = answer.targets.iter().map(|target| target.name.chars().count()).max().unwrap_or(0);
     for target in &answer.targets {
@@ -141,6 +146,9 @@ pub fn design_text(answer: &DesignAnswer) -> String {
     match (&answer.open, answer.designs.is_empty()) {
         (Some(why), _) => {
             let _ = writeln!(out, "{all}; sets of up to {up_to} were looked at, and not all is known: {why}");
+        }
+        (None, true) if answer.candidates == 0 => {
+            out.push_str("there is nothing that can be added\n");
         }
         (None, true) => {
             let _ = writeln!(out, "{all}; no set of up to {up_to} suffices; --at-most looks for larger ones");

@@ -104,6 +104,9 @@ const WIDEST: usize = 40;
 /// Generators of the identifiable functions, and whether every other one is a rational function of them.
 fn functions_text(found: &IdentifiableFunctions) -> String {
     let mut out = String::new();
+    if found.functions.is_empty() && found.generate_all() {
+        out.push_str("identifiable functions: none but constants (computed)\n");
+    }
     if !found.functions.is_empty() {
         let all = if found.generate_all() {
             ", of which every other one is a rational function (computed)"

@@ -2,8 +2,8 @@
 
 use super::model::Model;
 use super::round::{Course, Round, round};
-use super::{Solutions, SolutionsAnswer, SolutionsQuestion, bound, second, sum_of_errors};
-use crate::observability::generic::{Orders, Probe, orders_on_orbits};
+use super::{Solutions, SolutionsAnswer, SolutionsQuestion, bound, second};
+use crate::observability::generic::{Orders, Probe, orders_on_orbits, sum_of_errors};
 use palmistry_lang::System;
 use palmistry_math::expression::LOG2_ERROR;
 use rand::SeedableRng;

@@ -36,7 +36,7 @@ mod slice;
 mod tests;
 
 use super::Frame;
-use super::generic::{GenericAnswer, Seen};
+use super::generic::{GenericAnswer, Seen, sum_of_errors};
 use super::needed::CodistributionError;
 use count::count;
 use dashu::rational::RBig;
@@ -242,11 +242,6 @@ fn conclude(answer: &mut SolutionsAnswer, counted: &Result<(), String>, generic:
             }
         }
     }
-}
-
-/// The logarithm of the sum of two probabilities.
-fn sum_of_errors(a: f64, b: f64) -> f64 {
-    (a.exp2() + b.exp2()).log2()
 }
 
 /// Whether an expression is seen locally: where the rank stays what it is when it is an output.

@@ -1,6 +1,7 @@
 //! How many values a polynomial has on the points of an ideal: by the minimal polynomial in the quotient algebra.
 
 use super::basis::{Basis, Row};
+use crate::observability::residue_polynomial::gcd;
 use palmistry_math::number::PrimeField;
 use std::collections::HashMap;
 
@@ -242,27 +243,4 @@ pub(super) fn distinct_roots(field: &PrimeField, polynomial: &[u64]) -> usize {
     }
     let common = gcd(field, polynomial.to_vec(), slope);
     polynomial.len() - common.len().max(1)
-}
-
-fn gcd(field: &PrimeField, mut a: Vec<u64>, mut b: Vec<u64>) -> Vec<u64> {
-    let trim = |p: &mut Vec<u64>| {
-        while p.last() == Some(&0) {
-            p.pop();
-        }
-    };
-    trim(&mut a);
-    trim(&mut b);
-    while let Some(inverse) = b.last().and_then(|lead| field.inverse(*lead)) {
-        while a.len() >= b.len() {
-            let shift = a.len() - b.len();
-            let factor = field.product(a[a.len() - 1], inverse);
-            field.subtract_multiple(&mut a[shift..], factor, &b);
-            trim(&mut a);
-            if a.is_empty() {
-                break;
-            }
-        }
-        std::mem::swap(&mut a, &mut b);
-    }
-    a
 }

@@ -133,7 +133,7 @@ impl<'a> Slicer<'a> {
     /// In words; infinitely many too.
     pub fn common_points(&mut self, system: &System, functions: &[NodeId]) -> Result<usize, String> {
         let conditions: &Assignment = &self.question.conditions;
-        let asked = Model::new(system, conditions, functions)?.asked;
+        let Model { asked, variables: inputs, .. } = Model::new(system, conditions, functions)?;
         let field = PrimeField::random(&mut self.rng);
         let mut values: HashMap<u32, u64> = HashMap::new();
         let mut equations = Vec::new();
@@ -151,12 +151,21 @@ impl<'a> Slicer<'a> {
                 values.insert(place, field.draw(&mut self.rng));
             }
         }
-        // what is known is any number
+        // what is known is any number, or any point of the circle
         let mut known: HashMap<u32, u64> = HashMap::new();
-        let mentioned =
-            asked.iter().flat_map(|quotient| [&quotient.top, &quotient.bottom]).flat_map(variables_of);
-        for variable in mentioned.filter(|variable| !values.contains_key(variable)) {
-            known.entry(variable).or_insert_with(|| field.draw(&mut self.rng));
+        for (place, variable) in inputs.iter().enumerate() {
+            let place = place as u32;
+            match variable.input {
+                _ if values.contains_key(&place) => {}
+                Input::Cosine(_) => {
+                    let (sine, cosine) = field.draw_unit(&mut self.rng);
+                    known.extend([(place, cosine), (place + 1, sine)]);
+                }
+                Input::Sine(_) => {}
+                _ => {
+                    known.insert(place, field.draw(&mut self.rng));
+                }
+            }
         }
         for (place, quotient) in asked.iter().enumerate() {
             let jet =
@@ -201,10 +210,6 @@ impl<'a> Slicer<'a> {
         self.course.work.set(course.work.get());
         found
     }
-}
-
-fn variables_of(exact: &Exact) -> impl Iterator<Item = u32> + '_ {
-    exact.terms.keys().flatten().map(|(variable, _)| *variable)
 }
 
 impl Slice {

@@ -74,3 +74,8 @@ pub(super) fn rounds(equations: &Equations, orders: usize) -> Result<Rounds, Str
     let rounds = rounds.max(((100.0 + questions.log2() + 1.0) / -each).ceil() as usize);
     Ok(Rounds { rounds, log2_error: rounds as f64 * each + (questions + 1.0).log2() })
 }
+
+/// The logarithm of the sum of two probabilities.
+pub(crate) fn sum_of_errors(a: f64, b: f64) -> f64 {
+    (a.exp2() + b.exp2()).log2()
+}

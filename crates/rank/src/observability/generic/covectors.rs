@@ -23,6 +23,11 @@ pub(super) struct Covector {
     pub length: usize,
 }
 
+/// 0, 1, 2, ... in the field, as many as series of a length are differentiated by.
+pub(super) fn integers(field: &PrimeField, length: usize) -> Vec<u64> {
+    std::iter::successors(Some(0), |k| Some(field.sum(*k, field.one()))).take(length + 1).collect()
+}
+
 impl Covector {
     /// The value at `t = 0`.
     pub fn value(&self) -> Vec<u64> {

@@ -1,5 +1,6 @@
 //! Laurent series modulo a prime, each known up to some power, and linear equations over them.
 
+use palmistry_budget as budget;
 use palmistry_math::number::PrimeField;
 
 /// `sum_k terms[k] t^(low + k)`, the first of them not zero, known below `low + terms.len()`.
@@ -36,6 +37,7 @@ impl Laurent {
 
     fn product(&self, field: &PrimeField, other: &Laurent) -> Laurent {
         let length = self.terms.len().min(other.terms.len());
+        budget::steps(length * length);
         let mut terms = vec![0; length];
         for (place, a) in self.terms.iter().take(length).enumerate() {
             for (b, sum) in other.terms.iter().zip(&mut terms[place..]) {

@@ -27,6 +27,7 @@ mod steps;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use bound::sum_of_errors;
 pub(super) use matrix::formal_rank;
 pub use matrix::{GenericRank, generic_rank};
 pub(crate) use orders::Orders;
@@ -213,7 +214,7 @@ fn on_orbits(
     }
     let seen = conclude(&mut answer, &[best], &bounds, true, Ceiling::Rests);
     if answer.at_most < answer.dimension {
-        answer.log2_error = (answer.log2_error.exp2() + orbit.log2_error.exp2()).log2();
+        answer.log2_error = sum_of_errors(answer.log2_error, orbit.log2_error);
     }
     Some((answer, seen))
 }

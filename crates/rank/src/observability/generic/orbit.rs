@@ -12,11 +12,13 @@
 //!
 //! Reference: E. L. Ince, *Ordinary Differential Equations*, 1926, chapter 16, for exponents at a singular point.
 
-use super::bound::{self, Rounds};
+use super::bound::{self, Rounds, sum_of_errors};
+use super::covectors::integers;
 use super::echelon::Echelon;
 use super::laurent::{Laurent, solve};
-use super::probe::{Draw, Evaluated, Probe};
+use super::probe::{ATTEMPTS, Draw, Evaluated, Probe};
 use crate::observability::conditions::vanishes;
+use crate::observability::residue_polynomial::gcd;
 use palmistry_lang::{Assignment, System};
 use palmistry_math::expression::NodeId;
 use palmistry_math::number::{PrimeField, Refusal};
@@ -34,11 +36,11 @@ pub(crate) struct Orbit {
 /// Exponents up to this are looked for.
 const LARGEST_EXPONENT: u64 = 60;
 /// Series are taken to no more coefficients.
-const LONGEST: usize = 200;
+const LONGEST: usize = 120;
+/// Nor where their equations take more products than this for one point.
+const MOST_PRODUCTS: usize = 2_000_000_000;
 /// Nor of larger systems.
 const MOST_COORDINATES: usize = 40;
-/// Points that are poles are drawn again.
-const ATTEMPTS: usize = 40;
 
 /// Why there is no polynomial at a point.
 enum Trouble {
@@ -69,6 +71,10 @@ impl Probe {
         let most = ranks.iter().copied().max().unwrap_or(0);
         let mut length = 2 * (most + 2);
         loop {
+            let products = ranks.iter().map(|rank| (closed * rank * rank).saturating_mul(length * length));
+            if products.fold(0, usize::saturating_add) > MOST_PRODUCTS {
+                return Err(format!("exponents by series of {length} coefficients take too long"));
+            }
             match self.exponents(&ranks, length, rng) {
                 Ok((last, of_exponents)) => {
                     let log2_error = sum_of_errors(log2_error, of_exponents);
@@ -203,14 +209,6 @@ impl Probe {
     }
 }
 
-fn sum_of_errors(a: f64, b: f64) -> f64 {
-    (a.exp2() + b.exp2()).log2()
-}
-
-fn integers(field: &PrimeField, length: usize) -> Vec<u64> {
-    std::iter::successors(Some(0), |k| Some(field.sum(*k, field.one()))).take(length + 1).collect()
-}
-
 /// The probes with and without conditions on states; what stays at its initial condition all along is put in.
 pub(super) fn probes(system: &System, conditions: &Assignment, asked: &[NodeId]) -> (Probe, Probe) {
     let (system, asked) = settled(system, conditions, asked);
@@ -312,30 +310,6 @@ fn falling(field: &PrimeField, order: usize) -> Vec<u64> {
         minus = field.sum(minus, field.modulus() - field.one());
     }
     found
-}
-
-fn trim(polynomial: &mut Vec<u64>) {
-    while polynomial.last() == Some(&0) {
-        polynomial.pop();
-    }
-}
-
-fn gcd(field: &PrimeField, mut a: Vec<u64>, mut b: Vec<u64>) -> Vec<u64> {
-    trim(&mut a);
-    trim(&mut b);
-    while let Some(inverse) = b.last().and_then(|lead| field.inverse(*lead)) {
-        while a.len() >= b.len() {
-            let shift = a.len() - b.len();
-            let factor = field.product(a[a.len() - 1], inverse);
-            field.subtract_multiple(&mut a[shift..], factor, &b);
-            trim(&mut a);
-            if a.is_empty() {
-                break;
-            }
-        }
-        std::mem::swap(&mut a, &mut b);
-    }
-    a
 }
 
 /// The largest root that is a small integer, where no others are left.

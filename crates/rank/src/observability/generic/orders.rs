@@ -4,6 +4,7 @@
 //! equation that it satisfies is linear in `y_i^(h_i + 1)`, so that this and all further derivatives are *rational* in the
 //! derivatives of all outputs up to their `h`. The field that these generate is therefore that of all derivatives.
 
+use super::covectors::integers;
 use super::echelon::Echelon;
 use super::probe::{ATTEMPTS, Draw, Probe};
 use palmistry_math::number::{PrimeField, Refusal};
@@ -68,8 +69,7 @@ impl Probe {
         let start = equations.draw(field, rng)?;
         let length = last.iter().max().map_or(1, |most| most + 1);
         let trajectory = equations.trajectory(field, &start, (rng.random(), None), length)?;
-        let integers: Vec<u64> =
-            std::iter::successors(Some(0), |k| Some(field.sum(*k, field.one()))).take(length + 1).collect();
+        let integers = integers(&field, length);
         let mut columns = Echelon::new(field, equations.columns.len());
         let mut raised = vec![Vec::new(); equations.outputs];
         let mut open: Vec<_> = trajectory.covectors.into_iter().take(equations.outputs).enumerate().collect();
@@ -114,9 +114,7 @@ impl Probe {
         let mut length = (most.div_ceil(outputs) + 2).min(most);
         loop {
             let trajectory = equations.trajectory(field, &start, (draw.seed, draw.signs), length)?;
-            let one = field.one();
-            let integers: Vec<u64> =
-                std::iter::successors(Some(0), |k| Some(field.sum(*k, one))).take(length + 1).collect();
+            let integers = integers(&field, length);
             let mut closed = Echelon::new(field, equations.closed.len());
             let mut columns = Echelon::new(field, equations.columns.len());
             let count = equations.outputs;

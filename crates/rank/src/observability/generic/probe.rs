@@ -1,6 +1,6 @@
 //! The equations at random points modulo random primes: the span of the outputs' derivatives, as long as it grows.
 
-use super::covectors::Covector;
+use super::covectors::{Covector, integers};
 use super::echelon::Echelon;
 use super::equations::Equations;
 use crate::observability::State;
@@ -99,9 +99,7 @@ impl Probe {
         };
         loop {
             let trajectory = equations.trajectory(draw.field, start, (draw.seed, draw.signs), length)?;
-            let one = draw.field.one();
-            let integers: Vec<u64> =
-                std::iter::successors(Some(0), |k| Some(draw.field.sum(*k, one))).take(length + 1).collect();
+            let integers = integers(&draw.field, length);
             let mut echelon = Echelon::new(draw.field, full);
             // where all that moves is unknown the two are one
             let all = equations.closed.len();

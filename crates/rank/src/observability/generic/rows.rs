@@ -1,5 +1,6 @@
 //! The rows of each output by itself, to be put together in any choice of outputs.
 
+use super::covectors::integers;
 use super::echelon::Echelon;
 use super::probe::{ATTEMPTS, Draw, Probe};
 use palmistry_math::number::{PrimeField, Refusal};
@@ -60,9 +61,7 @@ impl Probe {
         let mut length = most.min(FIRST);
         loop {
             let trajectory = equations.trajectory(field, &start, (draw.seed, draw.signs), length)?;
-            let one = field.one();
-            let integers: Vec<u64> =
-                std::iter::successors(Some(0), |k| Some(field.sum(*k, one))).take(length + 1).collect();
+            let integers = integers(&field, length);
             let mut rests = true;
             let mut rows = Vec::new();
             for mut covector in trajectory.covectors {

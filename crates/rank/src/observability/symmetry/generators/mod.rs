@@ -406,6 +406,20 @@ impl<'a> Search<'a> {
             };
             of_it.is_none_or(stands)
         });
+        // at a second point, modulo another prime
+        if found.generate_all() {
+            let kept: Vec<usize> = (0..self.candidates.len())
+                .filter(|place| {
+                    found.functions.iter().any(|of_it| of_it.text == self.candidates[*place].text)
+                })
+                .collect();
+            if self.common(&kept) != Ok(self.points) {
+                found.common = None;
+                found.open = Some(
+                    "how many points the functions have in common is another number elsewhere".to_owned(),
+                );
+            }
+        }
         let fallen = before - found.functions.len();
         if fallen > 0 {
             found.missing += fallen;

@@ -7,6 +7,7 @@ use super::super::{factor_nodes, product};
 use super::{Candidate, Search};
 use palmistry_math::expression::SymbolFunction;
 use std::collections::BTreeMap;
+use std::sync::atomic::Ordering;
 
 /// No more unknown coefficients are solved for at once.
 const MOST_UNKNOWNS: usize = 330;
@@ -123,6 +124,9 @@ impl Search<'_> {
             .collect();
         let before = self.candidates.len();
         for bottom in bottoms {
+            if self.question.interrupt.load(Ordering::Relaxed) {
+                return Err("it was interrupted".to_owned());
+            }
             let has_open =
                 |monomial: &Monomial| monomial.powers.iter().any(|(place, _)| self.is_open[*place]);
             let is_above = |place: &usize| {
