@@ -105,6 +105,10 @@ pub use palmistry_report as report;
 #[doc(hidden)]
 pub use palmistry_lsp as lsp;
 
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub use palmistry_lab as lab;
+
 pub use certificate::certify;
 pub use claim::{
     Outcome, PointValue, ValueError, Verdict, Witness, certified_value, decide, decide_all, prove,

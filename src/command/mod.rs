@@ -19,6 +19,7 @@ mod eval;
 mod fmt;
 mod import;
 mod interrupt;
+mod lab;
 mod lsp;
 mod man;
 mod new;
@@ -63,6 +64,7 @@ use std::process::ExitCode;
     after_help = "Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written, 3 cut off by a signal before the end.",
     after_long_help = "Where to begin:
   palmistry demo                            four questions and their answers on a system of five lines
+  palmistry lab                             write a system in the browser, and see its answers beside it
   palmistry new mypaper                     a folder with a small paper that proves, a comment on each line
   palmistry check mysystem.proof            is it a proof file? every mistake, each at its place
   palmistry prove mysystem.proof --watch    decide its claims, and again whenever it is changed
@@ -100,6 +102,7 @@ enum Verb {
     Plan(plan::Plan),
     Poses(poses::Poses),
     Import(import::Import),
+    Lab(lab::Lab),
     New(new::New),
     Demo(demo::Demo),
     Fmt(fmt::Fmt),
@@ -203,6 +206,7 @@ impl Verb {
             Verb::Plan(verb) => verb.json,
             Verb::Poses(verb) => verb.json,
             Verb::Import(verb) => verb.json,
+            Verb::Lab(verb) => verb.json,
             Verb::New(verb) => verb.json,
             Verb::Demo(verb) => verb.json,
             Verb::Fmt(verb) => verb.json,
@@ -239,6 +243,7 @@ impl Verb {
             Verb::Plan(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Poses(verb) => verb.run(),
             Verb::Import(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::Lab(verb) => verb.run(),
             Verb::New(verb) => verb.run(),
             Verb::Demo(verb) => verb.run(),
             Verb::Fmt(verb) => verb.run(),

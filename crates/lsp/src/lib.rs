@@ -1,7 +1,7 @@
 //! A language server: what an editor asks of a proof file while somebody writes it.
 //!
 //! Mistakes as `palmistry check` finds them, by the same reader; what a name is and where it is declared, also in the files
-//! that are imported; the outline of a file; its normal form. Nothing is decided: claims are for `palmistry prove`.
+//! that are imported; what can stand at the cursor; the outline of a file; its normal form. Nothing is decided: claims are for `palmistry prove`.
 //!
 //! A text is taken from the editor as a whole and read again when it has stopped changing for a moment. What it imports is
 //! read from files as they are saved. Places are counted in lines and units of UTF-16.
@@ -12,12 +12,15 @@
 #![warn(missing_docs)]
 
 mod channel;
+mod completion;
+mod draft;
 mod hover;
 mod lookup;
 mod outline;
 mod source;
 
 pub use channel::{EditorStreams, standard_streams};
+pub use draft::Draft;
 use hover::described;
 use lookup::{Found, Library, Under, under};
 pub use lsp_server::Connection;
@@ -66,6 +69,7 @@ fn capabilities() -> Value {
             // texts come whole
             "textDocumentSync": { "openClose": true, "change": 1, "save": { "includeText": false } },
             "hoverProvider": true,
+            "completionProvider": { "triggerCharacters": ["."] },
             "definitionProvider": true,
             "documentSymbolProvider": true,
             "documentFormattingProvider": true,
@@ -224,8 +228,14 @@ impl Server<'_> {
                 if self.changed.contains(&uri) {
                     self.read(&uri);
                 }
-                self.documents.get(&uri).and_then(|document| self.hover(document, &params["position"]))
+                self.documents.get(&uri).and_then(|document| {
+                    hover_of(&self.library, &document.source, document.system.as_ref(), &params["position"])
+                })
             }
+            "textDocument/completion" => self.documents.get(&uri).map(|document| {
+                let at = document.source.offset(&params["position"]);
+                completion::completions(&self.library, &document.source, at).into()
+            }),
             "textDocument/definition" => self
                 .documents
                 .get(&uri)
@@ -234,35 +244,13 @@ impl Server<'_> {
                 self.documents.get(&uri).map(|document| outline::symbols(&document.source))
             }
             "textDocument/formatting" => {
-                self.documents.get(&uri).and_then(|document| formatted(&document.source))
+                self.documents.get(&uri).and_then(|document| form_edits(&document.source))
             }
             _ => {
                 return refused(ErrorCode::MethodNotFound, &format!("'{method}' is not served"));
             }
         };
         Response::new_ok(id, answer.unwrap_or(Value::Null))
-    }
-
-    fn hover(&self, document: &Document, position: &Value) -> Option<Value> {
-        let (source, system) = (&document.source, document.system.as_ref());
-        let (found, name, span) = match under(source, source.offset(position))? {
-            Under::Name(name, span) => (self.library.find(source, name), name, span),
-            Under::Reference(reference) => {
-                (self.library.referred(source, reference), reference.name.as_str(), reference.span.clone())
-            }
-            Under::Claim(claim) => {
-                let found = Found { source: source.clone(), declaration: claim.clone() };
-                (vec![found], claim.name.as_str(), claim.span.clone())
-            }
-            Under::File(_) => return None,
-        };
-        let texts: Vec<String> = found.iter().map(|one| described(one, name, source, system)).collect();
-        (!texts.is_empty()).then(|| {
-            json!({
-                "contents": { "kind": "markdown", "value": texts.join("\n\n") },
-                "range": source.range(&span),
-            })
-        })
     }
 
     fn definition(&self, source: &Rc<Source>, position: &Value) -> Value {
@@ -293,6 +281,33 @@ impl Server<'_> {
     }
 }
 
+/// What stands at a position, as a hover.
+fn hover_of(
+    library: &Library,
+    source: &Rc<Source>,
+    system: Option<&System>,
+    position: &Value,
+) -> Option<Value> {
+    let (found, name, span) = match under(source, source.offset(position))? {
+        Under::Name(name, span) => (library.find(source, name), name, span),
+        Under::Reference(reference) => {
+            (library.referred(source, reference), reference.name.as_str(), reference.span.clone())
+        }
+        Under::Claim(claim) => {
+            let found = Found { source: source.clone(), declaration: claim.clone() };
+            (vec![found], claim.name.as_str(), claim.span.clone())
+        }
+        Under::File(_) => return None,
+    };
+    let texts: Vec<String> = found.iter().map(|one| described(one, name, source, system)).collect();
+    (!texts.is_empty()).then(|| {
+        json!({
+            "contents": { "kind": "markdown", "value": texts.join("\n\n") },
+            "range": source.range(&span),
+        })
+    })
+}
+
 fn diagnostic(source: &Source, problem: &ReadError) -> Value {
     let begin = problem.span.offset();
     let message = match &problem.help {
@@ -308,7 +323,7 @@ fn diagnostic(source: &Source, problem: &ReadError) -> Value {
 }
 
 /// What turns a text into its normal form: nothing where it has none, or is in it.
-fn formatted(source: &Source) -> Option<Value> {
+fn form_edits(source: &Source) -> Option<Value> {
     let form = format_text(&source.name(), &source.text).ok()?;
     let edits =
         if form == source.text { json!([]) } else { json!([{ "range": source.whole(), "newText": form }]) };

@@ -49,6 +49,11 @@ fn context(text: &str, at: usize) -> Context {
     found
 }
 
+/// Whether what follows this part of a text is neither in a comment nor in quotation marks.
+pub(super) fn is_code(before: &str) -> bool {
+    matches!(context(before, before.len()), Context::Code)
+}
+
 /// What stands at a byte of the plain text, or ends there.
 pub(super) fn under(source: &Source, at: usize) -> Option<Under<'_>> {
     let (text, outline) = (&source.plain, &source.outline);

@@ -25,7 +25,7 @@ pub enum LandscapeRows {
 }
 
 /// Rows with their names.
-pub(crate) struct PictureRows {
+pub struct PictureRows {
     /// What is measured.
     pub measured: MeasuredRows,
     /// How each is called.
@@ -83,6 +83,8 @@ pub struct Map {
     /// By rows from the lowest `y`: the standard deviation over the prior one, of the unknown that is shown or of the worst; infinite
     /// where it is not observable or where that cannot be told, `None` at a pole.
     pub deviations: Vec<Option<f64>>,
+    /// Of each cell which unknown is shown, by its place among all: the one that was asked for, or the worst; `None` at a pole.
+    pub worst: Vec<Option<usize>>,
     /// In how many cells which unknown is shown: the one that was asked for, or the worst.
     pub shown: Vec<(String, usize)>,
     /// The scales of the numbers.
@@ -159,6 +161,11 @@ impl<'s> Landscape<'s> {
         let program = Program::plain(&system.graph, &rows.measured.entries);
         let defined = Defined::new(system, &guards);
         Ok(Landscape { system, program, defined, values, names, rows: rows.names, scales })
+    }
+
+    /// The unknowns, in the order of all numbers.
+    pub fn names(&self) -> &[String] {
+        &self.names
     }
 
     /// The scales of all numbers.
@@ -282,15 +289,12 @@ impl<'s> Landscape<'s> {
         let points: Vec<&[f64]> = points.iter().map(|point| &point[..]).collect();
         let found = self.at(&[&x.name, &y.name], &points)?;
         let only = of.map(|name| self.place(name)).transpose()?;
+        let of_cells = found.iter().map(|found| shown(found.as_ref()?, only));
+        let (worst, deviations): (Vec<_>, Vec<_>) = of_cells.map(Option::unzip).unzip();
         let mut counts = vec![0; self.names.len()];
-        let deviations = found.iter().map(|found| {
-            let (place, deviation) = shown(found.as_ref()?, only)?;
-            counts[place] += 1;
-            Some(deviation)
-        });
-        let deviations = deviations.collect();
+        worst.iter().flatten().for_each(|place: &usize| counts[*place] += 1);
         let shown = self.names.iter().cloned().zip(counts).filter(|(_, count)| *count > 0).collect();
-        Ok(Map { x, y, width, height, deviations, shown, scales: self.scales() })
+        Ok(Map { x, y, width, height, deviations, worst, shown, scales: self.scales() })
     }
 
     fn place(&self, name: &str) -> Result<usize, String> {

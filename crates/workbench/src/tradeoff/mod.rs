@@ -16,9 +16,10 @@ mod ways;
 
 #[doc(hidden)]
 pub use growth::{Growth, growth_of_lie_derivatives};
-pub(crate) use landscape::{Landscape, PictureRows};
 #[doc(hidden)]
-pub use landscape::{LandscapeRows, Map, PictureScales, Slope, standard_deviations_at};
+pub use landscape::{
+    Landscape, LandscapeRows, Map, PictureRows, PictureScales, Slope, standard_deviations_at,
+};
 pub(crate) use models::{ModelComparison, compare_reduction};
 pub(crate) use printed::printed_values;
 #[doc(hidden)]

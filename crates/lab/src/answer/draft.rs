@@ -1,0 +1,177 @@
+//! What a text says while somebody writes it: its mistakes, what it declares and claims, the system as mathematics.
+
+use super::place::Place;
+use dashu::rational::RBig;
+use maud::{Markup, PreEscaped, html};
+use palmistry_lang::{Declaration, DeclarationKind, Dimension, Kind, Range, System, Time, without_claims};
+use palmistry_lsp::Draft;
+use palmistry_math::expression::{NodeId, Symbol};
+use palmistry_math::number::rational_to_f64;
+use palmistry_report::formula_mathml;
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+/// Expressions that are longer as texts are not shown as formulas.
+const LONGEST: usize = 1500;
+
+pub(super) fn draft(place: &Place<'_>) -> Value {
+    let draft = place.draft();
+    let base = base(place, &draft);
+    let is_claim = |one: &&Declaration| matches!(one.kind, DeclarationKind::Claim(_));
+    let claim = |one: &Declaration| json!({ "id": one.name, "range": draft.range(&one.entry), "key": key(&base, &draft, one) });
+    let claims: Vec<Value> = draft.outline().declarations.iter().filter(is_claim).map(claim).collect();
+    let mut found = json!({
+        "problems": draft.diagnostics,
+        "claims": claims,
+        "base": base,
+        // of a text with mistakes nothing is decided
+        "sound": draft.diagnostics.is_empty(),
+    });
+    if let Some(system) = &draft.system {
+        found["title"] = json!(system.title);
+        found["cite"] = json!(system.cite);
+        found["discrete"] = json!(system.time == Time::Discrete);
+        found["symbols"] = symbols(system);
+        found["outputs"] = system.outputs.iter().map(|(text, _)| json!(text)).collect();
+        found["signals"] = signals(system).into_iter().map(|name| json!(name)).collect();
+        found["fields"] =
+            system.roles().iter().map(|one| json!({ "name": one.name, "role": one.role.name() })).collect();
+        found["maps"] = maps(system);
+        found["mathematics"] = json!(mathematics(system).into_string());
+    }
+    found
+}
+
+/// A number for all that verdicts depend on but the claims: two texts with one number have one system.
+fn base(place: &Place<'_>, draft: &Draft) -> String {
+    let mut hash = Sha256::new();
+    let mut part = |text: &str| {
+        hash.update((text.len() as u64).to_le_bytes());
+        hash.update(text);
+    };
+    part(&place.own.to_string_lossy());
+    part(&without_claims(draft.plain()));
+    for (file, text) in &place.named {
+        part(&file.to_string_lossy());
+        part(text);
+    }
+    hex(&hash.finalize())
+}
+
+/// The same for a claim. One that another one follows from, or that restates another, depends on what stands there.
+fn key(base: &str, draft: &Draft, claim: &Declaration) -> String {
+    let mut hash = Sha256::new();
+    hash.update(base);
+    let plain = draft.plain();
+    let entry = plain.get(claim.entry.clone()).unwrap_or_default();
+    hash.update(entry);
+    let within = |span: &std::ops::Range<usize>| claim.entry.contains(&span.start);
+    if draft.outline().references.iter().any(|reference| within(&reference.span)) {
+        hash.update(plain);
+    }
+    hex(&hash.finalize())
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().take(16).map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The signals: what is a function of time, and not of the states.
+fn signals(system: &System) -> Vec<String> {
+    let first = |chain: &Vec<Symbol>| chain.first().map(|symbol| system.symbol_name(*symbol).to_owned());
+    system.signal_chains().iter().filter_map(first).collect()
+}
+
+/// The symbols with the ranges that sliders have.
+fn symbols(system: &System) -> Value {
+    let unknowns = system.unknowns();
+    let signals: Vec<Symbol> = system.signal_chains().into_iter().flatten().collect();
+    let symbol = |(symbol, info): (Symbol, &palmistry_lang::SymbolInfo)| {
+        if info.kind == Kind::Imported {
+            return None;
+        }
+        let name = system.symbol_name(symbol);
+        let range = info.range.clone().or_else(|| system.default_range(symbol));
+        let [low, high] = ends(range.as_ref(), info.default.as_ref());
+        Some(json!({
+            "name": name,
+            "kind": if system.states.contains(&symbol) { "state" } else { "parameter" },
+            "unknown": unknowns.contains(&symbol),
+            "signal": signals.contains(&symbol),
+            "angle": info.is_angle,
+            "low": low,
+            "high": high,
+            "value": info.default.as_ref().map(rational_to_f64),
+            "dimension": system.dimension_of(symbol).map(Dimension::in_words),
+            "mathml": formula_mathml(name),
+        }))
+    };
+    system.symbols().filter_map(symbol).collect()
+}
+
+/// What a slider goes through: the range, or a half of a value to both sides of it.
+fn ends(range: Option<&Range>, value: Option<&RBig>) -> [f64; 2] {
+    match (range, value.map(rational_to_f64)) {
+        (Some(range), _) if range.low < range.high => [&range.low, &range.high].map(rational_to_f64),
+        (_, Some(value)) if value != 0.0 => {
+            let far = value.abs() / 2.0;
+            [value - far, value + far]
+        }
+        _ => [-1.0, 1.0],
+    }
+}
+
+/// The maps that the file asks for.
+fn maps(system: &System) -> Value {
+    let axis = |one: &palmistry_lang::CoordinateRange<RBig>| {
+        json!([one.name, rational_to_f64(&one.low), rational_to_f64(&one.high)])
+    };
+    let map = |map: &palmistry_lang::MapView| {
+        let at: serde_json::Map<String, Value> =
+            map.at.iter().map(|(name, value)| (name.clone(), json!(rational_to_f64(value)))).collect();
+        json!({ "title": map.title, "x": axis(&map.axes[0]), "y": axis(&map.axes[1]), "at": at, "of": map.of, "order": map.order })
+    };
+    system.maps.iter().map(map).collect()
+}
+
+/// The system as a paper writes it: each field with its components, and the outputs.
+fn mathematics(system: &System) -> Markup {
+    let mark = if system.time == Time::Discrete { "+" } else { "\u{2032}" };
+    html! {
+        @for field in &system.fields {
+            p.field { (field.role.name()) " " b { (field.name) } }
+            table.system {
+                @for (state, rate) in &field.components {
+                    tr {
+                        td { (formula(system.symbol_name(*state))) (mark) }
+                        td { "=" }
+                        td { (node(system, *rate)) }
+                    }
+                }
+            }
+        }
+        @if !system.outputs.is_empty() {
+            p.field { "outputs" }
+            table.system {
+                @for (text, _) in &system.outputs {
+                    tr { td { (formula(text)) } }
+                }
+            }
+        }
+    }
+}
+
+fn node(system: &System, node: NodeId) -> Markup {
+    formula(&system.graph.text(node))
+}
+
+fn formula(text: &str) -> Markup {
+    let mathml = if text.len() > LONGEST { None } else { formula_mathml(text) };
+    match mathml {
+        Some(formula) => PreEscaped(formula),
+        None => {
+            let short: String = text.chars().take(LONGEST).collect();
+            html! { code { (short) @if short.len() < text.len() { " ..." } } }
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! The lab: a page in a browser on this machine, in which one writes a system and sees what can be told of it.
+//!
+//! Two halves that know each other by lines of JSON alone. The [server](serve) hands out the page and passes questions on; it reads
+//! no proof file and decides nothing. Each question goes to a process of its own ([`answer`]), with a limit of time and of memory: what
+//! a text can do to that process it does to no other, and to stop a question is to end its process.
+
+#![warn(missing_docs)]
+
+mod answer;
+mod server;
+
+pub use answer::answer;
+pub use server::{Access, LabError, LabOptions, LabServer, Limits};
+
+/// Opens an address in the browser of whoever sits here.
+///
+/// # Errors
+/// There is none, or nothing that knows it.
+pub fn open_in_browser(url: &str) -> std::io::Result<()> {
+    open::that_detached(url)
+}
+
+/// From now on this process, and each that it starts, takes no more memory (bytes) and processor time (s) than this. What the system
+/// does not limit stays unlimited; the server's clock is there all the same.
+#[cfg(unix)]
+pub fn limit_this_process(memory: Option<u64>, seconds: Option<u64>) {
+    use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+    for (resource, most) in [(Resource::As, memory), (Resource::Cpu, seconds), (Resource::Core, Some(0))] {
+        if let Some(most) = most {
+            let most = getrlimit(resource).maximum.map_or(most, |allowed| most.min(allowed));
+            let _ = setrlimit(resource, Rlimit { current: Some(most), maximum: Some(most) });
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! The server: the page, and the way of a question to a process and of its answer back.
+
+mod folder;
+mod guard;
+mod pages;
+mod route;
+mod work;
+
+pub use guard::Access;
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use route::Router;
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::net::TcpListener;
+use tokio::sync::Semaphore;
+
+/// How often it is looked whether to stop.
+const PAUSE: Duration = Duration::from_millis(50);
+/// Whoever has not asked anything after this is no longer waited for.
+const HEAD: Duration = Duration::from_secs(15);
+/// More connections at once wait to be accepted.
+const MOST_CONNECTIONS: usize = 1024;
+
+/// What a question may take.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// The time of a question whose answer is waited for while one writes.
+    pub cheap: Duration,
+    /// The time of one that somebody asked by a button.
+    pub dear: Duration,
+    /// Memory of its process, in bytes.
+    pub memory: u64,
+    /// Questions at once, of all clients and of one.
+    pub at_once: [usize; 2],
+}
+
+/// What is served, and to whom.
+#[derive(Clone, Debug)]
+pub struct LabOptions {
+    /// Where it listens; port 0 is any free one.
+    pub address: SocketAddr,
+    /// Who may ask.
+    pub access: Access,
+    /// The folder whose files may be read, and written where the page says so.
+    pub folder: Option<PathBuf>,
+    /// What one question may take.
+    pub limits: Limits,
+    /// The program that answers, with the arguments before the limits.
+    pub program: (PathBuf, Vec<String>),
+}
+
+/// Why there is no lab.
+#[derive(Debug)]
+pub enum LabError {
+    /// The address cannot be listened on.
+    Address(SocketAddr, std::io::Error),
+    /// The folder cannot be read.
+    Folder(PathBuf, std::io::Error),
+    /// The system gives no threads.
+    Threads(std::io::Error),
+}
+
+/// A lab that listens and has not begun to answer.
+pub struct LabServer {
+    runtime: tokio::runtime::Runtime,
+    listener: TcpListener,
+    router: Arc<Router>,
+    address: SocketAddr,
+}
+
+impl LabServer {
+    /// Begins to listen.
+    ///
+    /// # Errors
+    /// [`LabError`].
+    pub fn new(options: LabOptions) -> Result<LabServer, LabError> {
+        let LabOptions { address, access, folder, limits, program } = options;
+        let folder = match folder {
+            None => None,
+            Some(folder) => {
+                let real = folder.canonicalize().and_then(|real| std::fs::read_dir(&real).map(|_| real));
+                Some(real.map_err(|why| LabError::Folder(folder, why))?)
+            }
+        };
+        let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build();
+        let runtime = runtime.map_err(LabError::Threads)?;
+        let listener = runtime.block_on(TcpListener::bind(address));
+        let listener = listener.map_err(|why| LabError::Address(address, why))?;
+        let address = listener.local_addr().map_err(|why| LabError::Address(address, why))?;
+        let router = Arc::new(Router::new(access, address, folder, limits, program));
+        Ok(LabServer { runtime, listener, router, address })
+    }
+
+    /// Where it listens.
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Answers until `stop` says so. Questions that are not answered by then are ended.
+    pub fn run(self, stop: &dyn Fn() -> bool) {
+        let LabServer { runtime, listener, router, .. } = self;
+        runtime.block_on(async {
+            let connections = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+            while !stop() {
+                let Ok(accepted) = tokio::time::timeout(PAUSE, listener.accept()).await else { continue };
+                // too many files are open, or the other end has gone: both pass
+                let Ok((stream, client)) = accepted else {
+                    tokio::time::sleep(PAUSE).await;
+                    continue;
+                };
+                let Ok(permit) = connections.clone().acquire_owned().await else { return };
+                let router = router.clone();
+                tokio::spawn(async move {
+                    let service = hyper::service::service_fn(move |request| {
+                        let router = router.clone();
+                        async move {
+                            Ok::<_, std::convert::Infallible>(router.respond(request, client.ip()).await)
+                        }
+                    });
+                    let mut server = http1::Builder::new();
+                    server.timer(TokioTimer::new()).header_read_timeout(HEAD).max_buf_size(64 << 10);
+                    // a connection that breaks is the other end's
+                    let _ = server.serve_connection(TokioIo::new(stream), service).await;
+                    drop(permit);
+                });
+            }
+        });
+        runtime.shutdown_timeout(PAUSE);
+    }
+}

@@ -1,0 +1,351 @@
+// The page as a whole: the text to the left, what can be said of it to the right.
+
+import { ask, element } from "/ask.js";
+import { Answers } from "/answers.js";
+import { Map_ } from "/map.js";
+import { Models } from "/models.js";
+import { Motion } from "/motion.js";
+import { Observe } from "/observe.js";
+import { Text } from "/text.js";
+
+/** A text is read when it has not changed for so long, in ms. */
+const QUIET = 40;
+/** A text in a link, or kept for the next time, is no longer than this. */
+const LONGEST = 4 << 20;
+const KEPT = "palmistry-text";
+
+const EXAMPLE = `system "A pendulum whose angle is measured"
+
+state phi, omega            # angle and rate
+param k = 2                 # gravity over length
+angle phi
+
+drift f
+  phi'   = omega
+  omega' = -k*sin(phi)
+
+output phi
+
+sample
+  phi   in [-3, 3]
+  omega in [-2, 2]
+
+claim motion: L(f, f, phi) = -k*sin(phi)
+claim energy: L(f, omega^2/2 - k*cos(phi)) = 0
+claim observable: rank = 2 everywhere
+`;
+
+const by = id => document.getElementById(id);
+
+class Lab {
+    async begin() {
+        this.jobs = new Set();
+        this.session = await ask("session", {});
+        by("version").textContent = this.session.version;
+        this.text = new Text(by("editor"), {
+            words: this.session.words, question: () => this.question(), changed: () => this.changed(), open: id => this.panels.answers.show(id),
+        });
+        this.panels = {
+            answers: new Answers(by("answers"), this), map: new Map_(by("map"), this), motion: new Motion(by("motion"), this),
+            observe: new Observe(by("observe"), this), models: new Models(by("models"), this),
+        };
+        this.tabs();
+        this.buttons();
+        by("save").hidden = !this.session.folder;
+        const { text, file } = await this.first();
+        this.put(text, file);
+        this.text.view.focus();
+        document.body.dataset.ready = "true";
+    }
+
+    /** The text of the link; else the one that was here last; else an example. */
+    async first() {
+        try {
+            const found = await fromLink(location.hash);
+            if (found) return found;
+        } catch (error) {
+            this.notice(new Error(`the link holds no text that can be read: ${error.message}`));
+        }
+        try {
+            const kept = JSON.parse(sessionStorage.getItem(KEPT));
+            if (typeof kept?.text === "string") return kept;
+        } catch { /* a browser that keeps nothing */ }
+        return { text: EXAMPLE, file: "" };
+    }
+
+    question() {
+        return { text: this.text.text, file: this.file };
+    }
+
+    /** Puts another text here; `file` is where it would stand. */
+    put(text, file = "") {
+        this.file = file;
+        by("file-name").textContent = file;
+        this.panels.answers.clear();
+        this.text.set(text);
+        by("notice").hidden = true;
+        this.changed(0);
+    }
+
+    changed(wait = QUIET) {
+        try {
+            const { text } = this.text;
+            if (text.length <= LONGEST) sessionStorage.setItem(KEPT, JSON.stringify({ text, file: this.file }));
+        } catch { /* it is full, or keeps nothing */ }
+        clearTimeout(this.timer);
+        this.timer = setTimeout(() => this.read(), wait);
+        document.body.dataset.told = "false";
+    }
+
+    /** Reads the text, and asks what is to be asked of it. What is asked of an older text is ended. */
+    async read() {
+        this.abort?.abort();
+        const { signal } = this.abort = new AbortController();
+        try {
+            const draft = await ask("answer", { ask: "draft", ...this.question() }, { signal });
+            if (signal.aborted) return;
+            this.draft = draft;
+            this.text.problems(draft.problems);
+            const count = draft.problems.length;
+            by("state").textContent = count ? `${count} ${count === 1 ? "mistake" : "mistakes"}: line ${draft.problems[0].range.start.line + 1}, ${draft.problems[0].message.split("\n")[0]}` : "no mistakes";
+            by("state").className = count ? "bad" : "";
+            document.title = draft.title ? `${draft.title}: Palmistry` : "Palmistry: the lab";
+            for (const panel of Object.values(this.panels)) if (panel !== this.panels.answers) panel.update(draft);
+            await this.panels.answers.update(draft, signal);
+            document.body.dataset.told = "true";
+        } catch (error) {
+            if (error.name === "AbortError") return;
+            by("state").textContent = error.message;
+            by("state").className = "bad";
+        }
+    }
+
+    /** Called when all cheap answers to a text are there. */
+    told() {}
+
+    /** Work that nobody asked for by a button: it ends with the text it is about. */
+    async quietly(what, outer, work) {
+        return this.work(what, outer, work, 700);
+    }
+
+    /** Work that somebody asked for. */
+    async run(what, work, abort = new AbortController()) {
+        return this.work(what, abort.signal, work, 0);
+    }
+
+    async work(what, outer, work, wait) {
+        const abort = new AbortController();
+        const end = () => abort.abort();
+        outer.addEventListener("abort", end);
+        if (outer.aborted) abort.abort();
+        const job = { what, end, done: null };
+        // what is over at once is not shown
+        const timer = setTimeout(() => { this.jobs.add(job); this.jobsShown(); }, wait);
+        try {
+            return await work(abort.signal, line => {
+                if (line.kind === "progress") {
+                    job.done = line.of > 0 ? line.done / line.of : null;
+                    this.jobsShown();
+                }
+            });
+        } finally {
+            clearTimeout(timer);
+            outer.removeEventListener("abort", end);
+            this.jobs.delete(job);
+            this.jobsShown();
+        }
+    }
+
+    jobsShown() {
+        const jobs = [...this.jobs];
+        by("running").hidden = jobs.length === 0;
+        if (jobs.length === 0) return;
+        by("running-what").textContent = jobs.map(job => job.what).join("; ");
+        const done = jobs[jobs.length - 1].done;
+        if (done == null) by("progress").removeAttribute("value");
+        else by("progress").value = done;
+    }
+
+    notice(error) {
+        by("notice").textContent = error.help ? `${error.message} (${error.help})` : error.message;
+        by("notice").hidden = false;
+    }
+
+    tab(name) {
+        for (const tab of by("tabs").children) {
+            const isChosen = tab.id === `tab-${name}`;
+            tab.setAttribute("aria-selected", isChosen);
+            tab.tabIndex = isChosen ? 0 : -1;
+            by(tab.id.slice(4)).hidden = !isChosen;
+        }
+        this.panels[name].shown?.();
+    }
+
+    tabs() {
+        const all = [...by("tabs").children];
+        all.forEach((tab, place) => {
+            tab.addEventListener("click", () => this.tab(tab.id.slice(4)));
+            tab.addEventListener("keydown", event => {
+                const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+                if (!step) return;
+                const next = all[(place + step + all.length) % all.length];
+                this.tab(next.id.slice(4));
+                next.focus();
+            });
+        });
+    }
+
+    buttons() {
+        by("stop").addEventListener("click", () => { for (const job of [...this.jobs]) job.end(); });
+        by("new").addEventListener("click", () => this.put(EXAMPLE));
+        by("open").addEventListener("click", () => by("chosen").click());
+        by("chosen").addEventListener("change", event => { this.take([...event.target.files]); event.target.value = ""; });
+        by("save").addEventListener("click", () => this.save());
+        by("format").addEventListener("click", () => this.format());
+        by("link").addEventListener("click", () => this.copy());
+        by("export").addEventListener("change", event => { this.exported(event.target.value); event.target.value = ""; });
+        addEventListener("hashchange", async () => {
+            const found = await fromLink(location.hash).catch(error => this.notice(error));
+            if (found) this.put(found.text, found.file);
+        });
+        for (const kind of ["dragover", "drop"]) document.body.addEventListener(kind, event => {
+            if (!event.dataTransfer?.types.includes("Files")) return;
+            event.preventDefault();
+            if (kind === "drop") this.take([...event.dataTransfer.files]);
+        });
+        addEventListener("keydown", event => {
+            if ((event.ctrlKey || event.metaKey) && event.key === "s") {
+                event.preventDefault();
+                this.session.folder ? this.save() : this.exported("proof");
+            }
+        });
+    }
+
+    /** Opens a proof file, a recording, or a file of another program. */
+    async take(files) {
+        const [first] = files;
+        if (!first) return;
+        if (/\.(csv|tsv)$/i.test(first.name) && files.length === 1) {
+            this.tab("observe");
+            return this.panels.observe.taken(first);
+        }
+        try {
+            if (files.reduce((size, file) => size + file.size, 0) > 16 << 20) throw new Error("these files are longer than 16 MiB");
+            const texts = Object.fromEntries(await Promise.all(files.map(async file => [file.name, await file.text()])));
+            if (/\.proof$/i.test(first.name)) return this.put(texts[first.name], first.name);
+            const found = await this.run(`importing ${first.name}`, signal => ask("answer", { ask: "import", files: texts }, { signal }));
+            this.put(found.proof, first.name.replace(/\.[^.]*$/, "").replace(/[^A-Za-z0-9_-]+/g, "_") + ".proof");
+            if (found.remarks?.length) this.notice(new Error(found.remarks.join("; ")));
+        } catch (error) {
+            if (error.name !== "AbortError") this.notice(error);
+        }
+    }
+
+    async save() {
+        let { file } = this;
+        if (!file || file.startsWith("papers:")) {
+            file = prompt("Save as (a path within the folder, ending with .proof)", file.split("/").pop() || "system.proof");
+            if (!file) return;
+        }
+        try {
+            await ask("save", { file, text: this.text.text });
+            this.file = file;
+            by("file-name").textContent = file;
+            by("state").textContent = `saved: ${file}`;
+        } catch (error) {
+            this.notice(error);
+        }
+    }
+
+    async format() {
+        try {
+            const { edits } = await ask("answer", { ask: "format", ...this.question() });
+            if (edits) this.text.edit(edits);
+            else this.notice(new Error("a text with mistakes has no normal form"));
+        } catch (error) {
+            this.notice(error);
+        }
+    }
+
+    async copy() {
+        try {
+            const address = new URL(location.href);
+            address.hash = await toLink(this.question());
+            history.replaceState(null, "", address);
+            await navigator.clipboard?.writeText(address.href);
+            by("state").textContent = "the link is in the address, and on the clipboard where the browser lets it; whoever runs 'palmistry lab' can open it";
+        } catch (error) {
+            by("state").textContent = "the link is in the address of this page";
+        }
+    }
+
+    async exported(kind) {
+        const name = (this.file.split("/").pop() || "system.proof").replace(/\.proof$/, "");
+        try {
+            if (kind === "proof") download(`${name}.proof`, "text/plain", this.text.text);
+            if (kind === "notebook") download(`${name}.ipynb`, "application/x-ipynb+json", notebook(this.text.text, this.draft?.title ?? name));
+            if (kind === "page") {
+                const { page } = await this.run("the page", signal => ask("answer", { ask: "page", ...this.question() }, { signal }));
+                download(`${name}.html`, "text/html", page);
+            }
+        } catch (error) {
+            if (error.name !== "AbortError") this.notice(error);
+        }
+    }
+}
+
+function download(name, type, text) {
+    const url = URL.createObjectURL(new Blob([text], { type }));
+    element("a", { href: url, download: name }).click();
+    setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+/** A notebook with the text and the questions of this page. */
+function notebook(text, title) {
+    const cell = (kind, source) => ({
+        cell_type: kind, id: crypto.randomUUID().slice(0, 8), metadata: {}, source: source.split(/(?<=\n)/), ...(kind === "code" ? { execution_count: null, outputs: [] } : {}),
+    });
+    // a string of JSON is one of Python
+    const cells = [
+        cell("markdown", `# ${title.replace(/[\\`*_{}[\]<>()#+\-.!|]/g, "\\$&")}`),
+        cell("code", `import palmistry\n\nsystem = palmistry.System.parse(${JSON.stringify(text)})`),
+        cell("code", "system.prove()"), cell("code", "system.rank()"),
+    ];
+    return JSON.stringify({ cells, metadata: { kernelspec: { display_name: "Python 3", language: "python", name: "python3" } }, nbformat: 4, nbformat_minor: 5 }, null, 1);
+}
+
+async function through(stream, bytes, most) {
+    const reader = new Blob([bytes]).stream().pipeThrough(stream).getReader();
+    const parts = [];
+    let size = 0;
+    for (;;) {
+        const { done, value } = await reader.read();
+        if (done) break;
+        size += value.length;
+        if (size > most) throw new Error("it is longer than 4 MiB");
+        parts.push(value);
+    }
+    return new Uint8Array(await new Blob(parts).arrayBuffer());
+}
+
+/** A text with its place, compressed, as the fragment of an address. */
+async function toLink(question) {
+    const bytes = await through(new CompressionStream("deflate-raw"), new TextEncoder().encode(JSON.stringify(question)), LONGEST);
+    let letters = "";
+    for (const byte of bytes) letters += String.fromCharCode(byte);
+    return `text=${btoa(letters).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "")}`;
+}
+
+async function fromLink(hash) {
+    const packed = hash.match(/^#text=([A-Za-z0-9_-]+)$/)?.[1];
+    if (!packed) return null;
+    const bytes = Uint8Array.from(atob(packed.replaceAll("-", "+").replaceAll("_", "/")), letter => letter.charCodeAt(0));
+    const found = JSON.parse(new TextDecoder().decode(await through(new DecompressionStream("deflate-raw"), bytes, LONGEST)));
+    if (typeof found.text !== "string") throw new Error("it has no text");
+    return { text: found.text, file: typeof found.file === "string" ? found.file : "" };
+}
+
+new Lab().begin().catch(error => {
+    by("notice").textContent = `${error.message}${error.help ? ` (${error.help})` : ""}`;
+    by("notice").hidden = false;
+});

@@ -1,0 +1,187 @@
+// Estimates from a recording that is dropped here, or from a simulated one whose noise and length are sliders.
+
+import { ask, element, refusal, shown } from "/ask.js";
+
+const QUIET = 250;
+/** Longer recordings are for the command. */
+const LONGEST = 24 << 20;
+
+/** The heads and the first rows of a table. */
+function table(csv) {
+    const lines = csv.split(/\r\n|\n|\r/).filter(line => line.trim() && !line.startsWith("#"));
+    const separator = [",", ";", "\t"].map(sign => [sign, (lines[0] ?? "").split(sign).length]).sort((a, b) => b[1] - a[1])[0][0];
+    const cells = line => line.split(separator).map(cell => cell.trim().replace(/^"(.*)"$/, "$1"));
+    return { heads: cells(lines[0] ?? ""), rows: lines.length - 1 };
+}
+
+export class Observe {
+    constructor(panel, lab) {
+        Object.assign(this, { lab, panel, chosen: new Set(), csv: null, columns: new Map() });
+        const number = (name, value, attributes, label) => {
+            const told = element("output", {}, shown(attributes.log ? 10 ** value : value));
+            const slider = element("input", {
+                type: "range", min: attributes.min, max: attributes.max, step: attributes.step, value, "aria-label": label,
+                oninput: () => { told.textContent = shown(this.value(name)); this.later(); },
+            });
+            this.sliders_ ??= {};
+            this.sliders_[name] = { slider, log: attributes.log };
+            return element("label", {}, label, slider, told);
+        };
+        this.source = element("div", { class: "row" });
+        this.file = element("input", { type: "file", accept: ".csv,.txt,.tsv", "aria-label": "A recording as CSV", onchange: () => this.taken(this.file.files[0]) });
+        this.simulated = element("div", { class: "sliders" }, number("noise", -2, { min: -6, max: 0, step: 0.1, log: true }, "noise"),
+            number("duration", 10, { min: 1, max: 100, step: 1 }, "duration"), number("samples", 200, { min: 10, max: 2000, step: 10 }, "samples"));
+        this.windows = element("div", { class: "sliders" }, number("window", 100, { min: 5, max: 100, step: 5 }, "window, %"), number("seed", 1, { min: 1, max: 50, step: 1 }, "seed"));
+        this.method = element("select", { "aria-label": "Method", onchange: () => this.later() },
+            [["", "the default"], ["multiple-shooting", "multiple shooting"], ["trust-region", "trust region"], ["whole", "all of the record"], ["unscented", "unscented Kalman filter"], ["kalman", "extended Kalman filter"], ["smoother", "smoother"], ["integration", "the first guess, carried along"]].map(([value, name]) => element("option", { value }, name)));
+        this.mapped = element("div", { class: "row" });
+        this.unknowns = element("fieldset", {}, element("legend", {}, "to be estimated"));
+        this.result = element("div");
+        const go = element("button", { onclick: () => this.estimate() }, "Estimate");
+        this.live = element("input", { type: "checkbox", checked: true });
+        panel.append(
+            element("p", { class: "hint" }, "Drop a recording here (CSV with a column of the time), or estimate from a simulation that starts as under Motion. The sliders show what noise and length cost in accuracy, and the window what it costs in time."),
+            element("div", { class: "row" }, element("label", {}, "recording", this.file), element("button", { onclick: () => this.taken(null) }, "Simulate instead")),
+            this.source, this.mapped, this.simulated, this.unknowns, this.windows,
+            element("div", { class: "row" }, element("label", {}, "method", this.method), go, element("label", {}, this.live, "at each change")),
+            this.result);
+        panel.addEventListener("dragover", event => { event.preventDefault(); panel.classList.add("dropping"); });
+        panel.addEventListener("dragleave", () => panel.classList.remove("dropping"));
+        panel.addEventListener("drop", event => {
+            event.preventDefault();
+            event.stopPropagation();
+            panel.classList.remove("dropping");
+            this.taken(event.dataTransfer.files[0]);
+        });
+    }
+
+    value(name) {
+        const { slider, log } = this.sliders_[name];
+        return log ? 10 ** Number(slider.value) : Number(slider.value);
+    }
+
+    update(draft) {
+        this.draft = draft;
+        if (!draft.sound || !draft.symbols || draft.base === this.base) return;
+        this.base = draft.base;
+        this.isNew = true;
+        const outputs = new Set(draft.outputs ?? []);
+        const box = symbol => {
+            const isChosen = symbol.unknown && !outputs.has(symbol.name);
+            if (isChosen) this.chosen.add(symbol.name);
+            else this.chosen.delete(symbol.name);
+            return element("label", {}, element("input", {
+                type: "checkbox", checked: isChosen, value: symbol.name,
+                onchange: event => { event.target.checked ? this.chosen.add(symbol.name) : this.chosen.delete(symbol.name); this.later(); },
+            }), symbol.name);
+        };
+        this.chosen.clear();
+        this.unknowns.replaceChildren(element("legend", {}, "to be estimated"), element("div", { class: "row" }, draft.symbols.filter(symbol => !symbol.signal).map(box)));
+        this.result.replaceChildren();
+        this.map();
+    }
+
+    shown() {
+        if (this.isNew) this.later();
+    }
+
+    async taken(file) {
+        this.result.replaceChildren();
+        if (file && file.size > LONGEST) {
+            this.result.replaceChildren(element("p", { class: "bad" }, "This recording is longer than 24 MiB: use the command 'palmistry observe'."));
+            return;
+        }
+        this.csv = file ? await file.text() : null;
+        this.name = file?.name;
+        if (!file) this.file.value = "";
+        this.columns.clear();
+        this.map();
+        this.later();
+    }
+
+    /** Which column is which signal. */
+    map() {
+        this.simulated.hidden = this.csv != null;
+        this.mapped.replaceChildren();
+        if (this.csv == null) {
+            this.source.replaceChildren(element("span", { class: "hint" }, "simulated, from the start under Motion"));
+            return;
+        }
+        const { heads, rows } = table(this.csv);
+        this.source.replaceChildren(element("span", {}, `${this.name}: ${rows} rows; columns ${heads.join(", ")}`));
+        const wanted = ["time", ...(this.draft?.outputs ?? []), ...(this.draft?.signals ?? []), ...(this.draft?.fields ?? []).filter(field => field.role === "input").map(field => field.name)];
+        const near = name => heads.find(head => head === name) ?? heads.find(head => head.toLowerCase() === name.toLowerCase()) ?? (name === "time" ? heads.find(head => /^t(ime)?\b/i.test(head)) ?? heads[0] : "");
+        for (const name of new Set(wanted)) {
+            const column = { from: near(name) ?? "", unit: "" };
+            this.columns.set(name, column);
+            const select = element("select", { "aria-label": `The column of ${name}`, onchange: event => { column.from = event.target.value; this.later(); } }, ["", ...heads].map(head => element("option", { value: head }, head || "(none)")));
+            select.value = column.from;
+            const unit = element("input", { size: 4, placeholder: "unit", "aria-label": `The unit of the column of ${name}, if it is another`, onchange: event => { column.unit = event.target.value.trim(); this.later(); } });
+            this.mapped.append(element("label", {}, name, select, unit));
+        }
+    }
+
+    later() {
+        if (!this.live.checked || this.panel.hidden) return;
+        clearTimeout(this.timer);
+        this.timer = setTimeout(() => this.estimate(), QUIET);
+    }
+
+    question() {
+        const base = { ask: "observe", ...this.lab.question(), estimate: [...this.chosen], method: this.method.value || null, seed: this.value("seed") };
+        const { motion } = this.lab.panels;
+        if (this.csv == null) {
+            const samples = this.value("samples");
+            return {
+                ...base, noise: this.value("noise"), window: Math.max(2, Math.round(this.value("window") / 100 * (samples - 1))),
+                from: { motion: { start: motion.start(), inputs: motion.driven(), duration: this.value("duration"), samples } },
+            };
+        }
+        const columns = {};
+        for (const [name, { from, unit }] of this.columns) if (from) columns[name] = { from, unit: unit || null };
+        const known = {};
+        for (const symbol of this.draft.symbols) {
+            if (symbol.kind === "parameter" && !this.chosen.has(symbol.name) && symbol.value != null) known[symbol.name] = symbol.value;
+        }
+        const { rows } = table(this.csv);
+        return {
+            ...base, window: Math.max(2, Math.round(this.value("window") / 100 * (rows - 1))), known,
+            from: { record: { csv: this.csv, columns, interpolation: null } },
+        };
+    }
+
+    async estimate() {
+        if (!this.draft?.sound) return;
+        if (this.chosen.size === 0) return this.result.replaceChildren(element("p", { class: "hint" }, "Choose what is to be estimated."));
+        this.isNew = false;
+        this.abort?.abort();
+        const abort = this.abort = new AbortController();
+        const begin = performance.now();
+        try {
+            const found = await this.lab.run("the estimate", signal => ask("answer", this.question(), { signal }), abort);
+            await this.told(found, performance.now() - begin);
+        } catch (error) {
+            if (error.name !== "AbortError") this.result.replaceChildren(refusal(error));
+        }
+    }
+
+    async told({ observed, page, scene }, took) {
+        const parts = [];
+        for (const observer of observed.observers ?? []) {
+            const { end } = observer;
+            const heads = ["", "estimate", "\u00b1 (Cram\u00e9r-Rao)", "true", "error"];
+            const rows = Object.entries(end?.states ?? {}).map(([name, state]) => element("tr", {},
+                element("td", {}, name), element("td", {}, shown(state.recovered ?? NaN, 6)), element("td", {}, state.bound == null ? "not observable" : shown(state.bound, 2)),
+                element("td", {}, state.true == null ? "" : shown(state.true, 6)), element("td", {}, state.error == null ? "" : shown(state.error, 2))));
+            parts.push(element("h2", {}, observer.method ?? observer.name ?? "estimate"));
+            if (rows.length) parts.push(element("div", { class: "wide" }, element("table", { class: "estimates" }, element("thead", {}, element("tr", {}, heads.map(head => element("th", {}, head)))), element("tbody", {}, rows))));
+            if (observer.seconds != null) parts.push(element("p", { class: "hint", "data-seconds": observer.seconds }, `${shown(observer.seconds, 2)} s of the observer, ${shown(took / 1000, 2)} s in all`));
+        }
+        this.result.replaceChildren(...parts);
+        if (page) {
+            const kept = await ask("page", { page });
+            this.result.append(element("iframe", { src: `/page/${kept.page}`, title: "Estimates, bands, residuals and the test of fit", sandbox: "allow-scripts" }));
+        }
+        if (scene) this.result.append(element("details", {}, element("summary", {}, "The scene, for 'palmistry observe'"), element("pre", {}, scene)));
+    }
+}

@@ -1,0 +1,109 @@
+// A body between two flat palms as it moves: where it touches them, and the outline that was recovered from these touches.
+
+import { element, shown } from "/ask.js";
+
+const SPACE = "http://www.w3.org/2000/svg";
+/** The motion is shown in so many seconds. */
+const SECONDS = 8;
+
+function drawn(name, attributes = {}) {
+    const found = document.createElementNS(SPACE, name);
+    for (const [key, value] of Object.entries(attributes)) found.setAttribute(key, value);
+    return found;
+}
+
+function rows(csv) {
+    const [head, ...lines] = csv.trim().split("\n").map(line => line.split(","));
+    return lines.map(line => Object.fromEntries(head.map((name, place) => [name, Number(line[place])])));
+}
+
+/** The boundary point with an outward normal of direction `u`, of the support function that was recovered. */
+function outline({ mean_radius: mean, harmonics }, u) {
+    let [h, slope] = [mean, 0];
+    harmonics.forEach(([p, q], place) => {
+        const k = place + 1;
+        h += p * Math.cos(k * u) + q * Math.sin(k * u);
+        slope += k * (q * Math.cos(k * u) - p * Math.sin(k * u));
+    });
+    return [h * Math.cos(u) - slope * Math.sin(u), h * Math.sin(u) + slope * Math.cos(u)];
+}
+
+/** The two contacts at a moment: in the world, in the body's frame, and the direction of the normal there. */
+function contacts(at) {
+    const angles = [at.phi1, at.phi1 + at.phi2];
+    return angles.map((angle, palm) => {
+        const s = palm === 0 ? at.s1 : at.s2;
+        const world = [s * Math.cos(angle), s * Math.sin(angle)];
+        const [x, y] = [world[0] - at.x, world[1] - at.y];
+        const [c, d] = [Math.cos(at.phi0), Math.sin(at.phi0)];
+        // the body lies to the left of palm 1 and to the right of palm 2
+        const normal = angle + (palm === 0 ? -Math.PI / 2 : Math.PI / 2) - at.phi0;
+        return { world, body: [c * x + d * y, c * y - d * x], normal };
+    });
+}
+
+/** A moving picture of a scene, where there is one to be drawn; nothing otherwise. */
+export function movingScene(csv, shape) {
+    const moments = rows(csv);
+    if (moments.length < 2 || !("phi0" in moments[0]) || !Array.isArray(shape?.harmonics)) return null;
+    const touches = moments.map(contacts);
+    // where the origin of the recovered outline lies in the body is not determined by touch: it is put where the contacts are
+    const shift = [0, 1].map(axis => touches.flat().reduce((sum, touch) => sum + touch.body[axis] - outline(shape, touch.normal)[axis], 0) / (2 * touches.length));
+    const points = Array.from({ length: 181 }, (_, place) => outline(shape, place * Math.PI / 90).map((value, axis) => value + shift[axis]));
+    const far = Math.max(...touches.flat().map(touch => Math.hypot(...touch.world))) * 1.25;
+    // curved palms are not drawn: contacts would lie beside them
+    const off = Math.max(...touches.flat().map(touch => {
+        const at = outline(shape, touch.normal);
+        return Math.hypot(at[0] + shift[0] - touch.body[0], at[1] + shift[1] - touch.body[1]);
+    }));
+    if (!(off < 0.02 * far)) return null;
+    const size = 420;
+    const put = ([x, y]) => [size / 2 + x / far * size * 0.48, size * 0.86 - y / far * size * 0.62].map(value => value.toFixed(1));
+    const svg = drawn("svg", { viewBox: `0 0 ${size} ${size}`, class: "chart", role: "img", "aria-label": "The body between its palms, with the contacts and the recovered outline", style: "max-width: 30rem" });
+    const body = drawn("polygon", { style: "fill: color-mix(in srgb, var(--soft) 18%, transparent); stroke: var(--soft)" });
+    const palms = [0, 1].map(palm => drawn("line", { style: `stroke: var(--${palm === 0 ? "first" : "second"}); stroke-width: 4` }));
+    const trails = [0, 1].map(palm => drawn("polyline", { style: `stroke: var(--${palm === 0 ? "first" : "second"}); stroke-width: 4; fill: none` }));
+    const lights = [0, 1].map(() => drawn("circle", { r: 7, style: "fill: #e69f00; stroke: var(--ink)" }));
+    svg.append(body, ...palms, ...trails, ...lights);
+    const time = element("input", { type: "range", min: 0, max: moments.length - 1, step: 1, value: 0, "aria-label": "Time" });
+    const told = element("output");
+    const show = place => {
+        const at = moments[place];
+        const [c, d] = [Math.cos(at.phi0), Math.sin(at.phi0)];
+        const world = ([x, y]) => put([at.x + c * x - d * y, at.y + d * x + c * y]).join(",");
+        body.setAttribute("points", points.map(world).join(" "));
+        touches[place].forEach((touch, palm) => {
+            const angle = palm === 0 ? at.phi1 : at.phi1 + at.phi2;
+            const [x1, y1] = put([0, 0]);
+            const [x2, y2] = put([far * Math.cos(angle), far * Math.sin(angle)]);
+            for (const [key, value] of Object.entries({ x1, y1, x2, y2 })) palms[palm].setAttribute(key, value);
+            const [cx, cy] = put(touch.world);
+            lights[palm].setAttribute("cx", cx);
+            lights[palm].setAttribute("cy", cy);
+            trails[palm].setAttribute("points", touches.slice(0, place + 1).map(all => world(all[palm].body)).join(" "));
+        });
+        time.value = place;
+        told.textContent = `${shown(at.time, 3)} s`;
+    };
+    let begin = null;
+    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    const play = element("button", { onclick: () => (begin == null ? start() : stop()) }, "Play");
+    const stop = () => { begin = null; play.textContent = "Play"; };
+    const step = now => {
+        if (begin == null || !svg.isConnected) return;
+        const part = (now - begin) / (1000 * SECONDS);
+        show(Math.min(Math.floor(part * moments.length), moments.length - 1));
+        if (part >= 1) stop();
+        else requestAnimationFrame(step);
+    };
+    const start = () => {
+        play.textContent = "Pause";
+        begin = performance.now() - (Number(time.value) >= moments.length - 1 ? 0 : Number(time.value) / moments.length * 1000 * SECONDS);
+        requestAnimationFrame(step);
+    };
+    time.addEventListener("input", () => { stop(); show(Number(time.value)); });
+    show(0);
+    if (!calm) requestAnimationFrame(start);
+    return element("figure", {}, svg, element("div", { class: "row" }, play, time, told),
+        element("figcaption", {}, "In grey the outline that was recovered, in blue and orange what has touched a palm so far, as measured. The pose is that of the simulation; where the outline lies in the body touch does not tell, so that it is put where the contacts are."));
+}
