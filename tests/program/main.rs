@@ -10,6 +10,8 @@ mod damaged;
 mod editors;
 mod harm;
 mod import;
+#[cfg(unix)]
+mod lab;
 mod least;
 mod observable_pictures;
 mod page;

@@ -127,6 +127,7 @@ export class Map_ {
     async drawn() {
         if (!this.draft?.sound || this.panel.hidden) return;
         this.isNew = false;
+        this.canvas.dataset.done = false;
         this.abort?.abort();
         const abort = this.abort = new AbortController();
         const [x, y] = [this.axis("x"), this.axis("y")];
@@ -139,6 +140,8 @@ export class Map_ {
         try {
             const found = await this.lab.quietly("the map", abort.signal, signal => ask("answer", question, { signal, line: line => line.kind === "map" && this.paint(line) }));
             this.names = found.names;
+            this.canvas.dataset.done = true;
+            this.told();
         } catch (error) {
             if (error.name !== "AbortError") this.failure.replaceChildren(refusal(error));
         }

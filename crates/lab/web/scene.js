@@ -51,6 +51,11 @@ export function movingScene(csv, shape) {
     const shift = [0, 1].map(axis => touches.flat().reduce((sum, touch) => sum + touch.body[axis] - outline(shape, touch.normal)[axis], 0) / (2 * touches.length));
     const points = Array.from({ length: 181 }, (_, place) => outline(shape, place * Math.PI / 90).map((value, axis) => value + shift[axis]));
     const far = Math.max(...touches.flat().map(touch => Math.hypot(...touch.world))) * 1.25;
+    const turned = (at, [x, y]) => {
+        const [c, d] = [Math.cos(at.phi0), Math.sin(at.phi0)];
+        return [at.x + c * x - d * y, at.y + d * x + c * y];
+    };
+    const ends = at => [at.phi1, at.phi1 + at.phi2].map(angle => [far * Math.cos(angle), far * Math.sin(angle)]);
     // curved palms are not drawn: contacts would lie beside them
     const off = Math.max(...touches.flat().map(touch => {
         const at = outline(shape, touch.normal);
@@ -58,7 +63,12 @@ export function movingScene(csv, shape) {
     }));
     if (!(off < 0.02 * far)) return null;
     const size = 420;
-    const put = ([x, y]) => [size / 2 + x / far * size * 0.48, size * 0.86 - y / far * size * 0.62].map(value => value.toFixed(1));
+    // all of the motion is within the frame, to one scale
+    const some = moments.filter((_, place) => place % Math.ceil(moments.length / 30) === 0);
+    const seen = [[0, 0], ...some.flatMap(at => [...ends(at), ...points.filter((_, place) => place % 6 === 0).map(point => turned(at, point))])];
+    const [low, high] = [Math.min, Math.max].map(most => [0, 1].map(axis => most(...seen.map(point => point[axis]))));
+    const scale = 0.94 * size / Math.max(high[0] - low[0], high[1] - low[1]);
+    const put = ([x, y]) => [size / 2 + scale * (x - (low[0] + high[0]) / 2), size / 2 - scale * (y - (low[1] + high[1]) / 2)].map(value => value.toFixed(1));
     const svg = drawn("svg", { viewBox: `0 0 ${size} ${size}`, class: "chart", role: "img", "aria-label": "The body between its palms, with the contacts and the recovered outline", style: "max-width: 30rem" });
     const body = drawn("polygon", { style: "fill: color-mix(in srgb, var(--soft) 18%, transparent); stroke: var(--soft)" });
     const palms = [0, 1].map(palm => drawn("line", { style: `stroke: var(--${palm === 0 ? "first" : "second"}); stroke-width: 4` }));
@@ -69,13 +79,11 @@ export function movingScene(csv, shape) {
     const told = element("output");
     const show = place => {
         const at = moments[place];
-        const [c, d] = [Math.cos(at.phi0), Math.sin(at.phi0)];
-        const world = ([x, y]) => put([at.x + c * x - d * y, at.y + d * x + c * y]).join(",");
+        const world = point => put(turned(at, point)).join(",");
         body.setAttribute("points", points.map(world).join(" "));
         touches[place].forEach((touch, palm) => {
-            const angle = palm === 0 ? at.phi1 : at.phi1 + at.phi2;
             const [x1, y1] = put([0, 0]);
-            const [x2, y2] = put([far * Math.cos(angle), far * Math.sin(angle)]);
+            const [x2, y2] = put(ends(at)[palm]);
             for (const [key, value] of Object.entries({ x1, y1, x2, y2 })) palms[palm].setAttribute(key, value);
             const [cx, cy] = put(touch.world);
             lights[palm].setAttribute("cx", cx);
@@ -91,7 +99,7 @@ export function movingScene(csv, shape) {
     const stop = () => { begin = null; play.textContent = "Play"; };
     const step = now => {
         if (begin == null || !svg.isConnected) return;
-        const part = (now - begin) / (1000 * SECONDS);
+        const part = Math.max((now - begin) / (1000 * SECONDS), 0);
         show(Math.min(Math.floor(part * moments.length), moments.length - 1));
         if (part >= 1) stop();
         else requestAnimationFrame(step);

@@ -4,7 +4,8 @@ mod browser;
 mod size;
 
 use crate::common::{folder, write};
-use browser::{Look, browser, look};
+pub use browser::browser;
+use browser::{Look, look};
 use palmistry::experiment::{BasinStudy, Experiment, Scene, Studied, basins};
 use palmistry::paper::{Findings, Paper, VerifyOptions, verify};
 use palmistry::report::{Observed, observe_page, page};

@@ -50,12 +50,26 @@ fn base(place: &Place<'_>, draft: &Draft) -> String {
         hash.update(text);
     };
     part(&place.own.to_string_lossy());
-    part(&without_claims(draft.plain()));
+    part(&without_remarks(&without_claims(draft.plain())));
     for (file, text) in &place.named {
         part(&file.to_string_lossy());
         part(text);
     }
     hex(&hash.finalize())
+}
+
+/// A text without its comments and empty lines.
+fn without_remarks(text: &str) -> String {
+    let (mut found, mut quoted, mut comment) = (String::with_capacity(text.len()), false, false);
+    for c in text.chars() {
+        quoted ^= c == '"' && !comment;
+        comment = (comment || c == '#' && !quoted) && c != '\n';
+        if !comment {
+            found.push(c);
+        }
+    }
+    let lines = found.lines().map(str::trim_end).filter(|line| !line.is_empty());
+    lines.map(|line| format!("{line}\n")).collect()
 }
 
 /// The same for a claim. One that another one follows from, or that restates another, depends on what stands there.
