@@ -1,4 +1,4 @@
-//! Puts the papers under `proofs/` into the program, so that an installed one has them: writes a list of their files, of which
+//! Puts the papers under `proofs/` and the systems under `examples/` into the program, so that an installed one has them: writes a list of their files, of which
 //! the compiler reads each. Only the program depends on them and not the library, so that an edit of a proof compiles little.
 //!
 //! And what `palmistry --version --verbose` says of this build. The commit is the one that a release names (`PALMISTRY_COMMIT`), or that a
@@ -28,6 +28,14 @@ fn main() {
             let name = name.replace(std::path::MAIN_SEPARATOR, "/");
             let _ = writeln!(list, "    ({name:?}, include_bytes!({:?})),", file.display().to_string());
         }
+    }
+    // the systems that the book and the lab show
+    let examples = root.with_file_name("examples").join("systems");
+    println!("cargo::rerun-if-changed={}", examples.display());
+    for file in entries(&examples).into_iter().filter(|path| path.is_file()) {
+        let name = file.file_name().expect("it is a file").to_str().expect("names are UTF-8");
+        let _ =
+            writeln!(list, "    (\"examples/{name}\", include_bytes!({:?})),", file.display().to_string());
     }
     list.push_str("]\n");
     let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("cargo sets it")).join("papers.rs");

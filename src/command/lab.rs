@@ -6,7 +6,7 @@ use super::{Status, Unusable};
 use clap::Args;
 use palmistry::file::note;
 use palmistry::foreign::shown_path;
-use palmistry::lab::{Access, LabError, LabOptions, LabServer, Limits, answer};
+use palmistry::lab::{Access, LabError, LabOptions, LabServer, Limits, answer, open_in_browser};
 use serde_json::{Value, json};
 use std::io::{Read, Write};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
@@ -82,10 +82,7 @@ impl Lab {
         let Lab { no_open, json, public, .. } = self;
         let (server, access) = server;
         let address = server.address();
-        let url = match &access {
-            Access::Token(token) => format!("http://{address}/?token={token}"),
-            Access::Public => format!("http://{address}/"),
-        };
+        let url = access.address(address);
         if json {
             super::output::print_in_lines();
             print_json(&json!({ "url": url, "address": address.to_string() }))?;
@@ -95,7 +92,7 @@ impl Lab {
         }
         if !no_open
             && public.is_none()
-            && let Err(why) = palmistry::lab::open_in_browser(&url)
+            && let Err(why) = open_in_browser(&access.address_once(address))
         {
             note(&format!("no browser could be opened ({why}): open the address above yourself"));
         }
@@ -112,11 +109,23 @@ impl Lab {
         let (access, limits) = match self.public {
             None => {
                 let [cheap, dear] = [10, 1800].map(Duration::from_secs);
-                (Access::with_token(), Limits { cheap, dear, memory: 8 << 30, at_once: [cores.max(4); 2] })
+                (
+                    Access::with_token(),
+                    Limits { cheap, dear, memory: 8 << 30, question: 32 << 20, at_once: [cores.max(4); 2] },
+                )
             }
             Some(_) => {
                 let [cheap, dear] = [10, 30].map(Duration::from_secs);
-                (Access::Public, Limits { cheap, dear, memory: 2 << 30, at_once: [cores, 2.min(cores)] })
+                (
+                    Access::Public,
+                    Limits {
+                        cheap,
+                        dear,
+                        memory: 2 << 30,
+                        question: 2 << 20,
+                        at_once: [cores, 2.min(cores)],
+                    },
+                )
             }
         };
         let options = |address| LabOptions {

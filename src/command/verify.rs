@@ -8,7 +8,7 @@ use clap::Args;
 use palmistry::System;
 use palmistry::file;
 use palmistry::foreign::shown;
-use palmistry::paper::{Findings, Paper, VerifyOptions, verify_into};
+use palmistry::paper::{Findings, MANIFEST, Paper, VerifyOptions, verify_into};
 use palmistry::report::{
     errata_markdown, findings_json, findings_text, forget_seconds, forget_times, page_with, versioned,
 };
@@ -137,7 +137,8 @@ impl Verify {
 
 /// The folder of a paper that came with the program; the first one where none is named.
 pub(crate) fn packed_paper(name: Option<&str>) -> miette::Result<PathBuf> {
-    let all = file::packed_folders();
+    let is_paper = |name: &&str| file::is_file(Path::new(&format!("{}{name}/{MANIFEST}", file::PACKED)));
+    let all: Vec<&str> = file::packed_folders().into_iter().filter(is_paper).collect();
     let found = match name {
         None => all.first(),
         Some(name) => all.iter().find(|known| **known == name),

@@ -10,6 +10,7 @@ export class Answers {
     constructor(panel, lab) {
         this.lab = lab;
         this.known = new Map();
+        this.asked = new Set();
         this.blocks = Object.fromEntries(["unknowns", "more", "claims", "system"].map(name => [name, element("section", { id: `answers-${name}` })]));
         panel.append(...Object.values(this.blocks));
         this.results = element("div");
@@ -42,6 +43,8 @@ export class Answers {
         const missing = draft.claims.filter(claim => !this.known.has(claim.key));
         const isNew = draft.base !== this.base;
         if (isNew) {
+            // what was asked of another system is ended
+            for (const abort of this.asked) abort.abort();
             this.results.replaceChildren();
             this.unknowns = null;
         }
@@ -185,6 +188,8 @@ export class Answers {
 
     async more(name, question) {
         const { base } = this;
+        const abort = new AbortController();
+        this.asked.add(abort);
         const output = element("pre");
         const state = element("p", { class: "hint", role: "status" }, "searching ...");
         const block = element("section", { "data-asked": name }, element("h2", {}, name), state, output);
@@ -196,7 +201,7 @@ export class Answers {
             }
         };
         try {
-            const answer = await this.lab.run(name, (signal, line) => ask("answer", { ...question, ...this.lab.question() }, { signal, line: found => { line(found); take(found); } }));
+            const answer = await this.lab.run(name, (signal, line) => ask("answer", { ...question, ...this.lab.question() }, { signal, line: found => { line(found); take(found); } }), abort);
             state.remove();
             output.textContent = answer.text;
             if (answer.global && base === this.base) {
@@ -206,6 +211,8 @@ export class Answers {
             }
         } catch (error) {
             state.replaceWith(error.name === "AbortError" ? element("p", { class: "hint" }, "stopped; what was found until then stands here") : refusal(error));
+        } finally {
+            this.asked.delete(abort);
         }
     }
 

@@ -2,20 +2,22 @@
 
 const KEY = "palmistry-token";
 
-/** The token that the address was opened with; later pages of this browser find it again. */
-function token() {
-    const address = new URL(location.href);
-    const given = address.searchParams.get("token");
-    if (given) {
-        localStorage.setItem(KEY, given);
-        address.searchParams.delete("token");
-        // it stays out of the history and of links that are copied
-        history.replaceState(null, "", address);
-    }
-    return given ?? localStorage.getItem(KEY) ?? "";
-}
+let own = "";
 
-const own = token();
+/** Takes the token from the address that was opened, or buys it for the code there; later pages of this browser find it again. */
+export async function enter() {
+    const address = new URL(location.href);
+    const [code, given] = ["code", "token"].map(key => address.searchParams.get(key));
+    own = given ?? localStorage.getItem(KEY) ?? "";
+    if (code) {
+        address.searchParams.delete("code");
+        own = (await ask("enter", { code }).catch(() => null))?.token ?? own;
+    }
+    address.searchParams.delete("token");
+    // it stays out of the history and of links that are copied
+    if (code || given) history.replaceState(null, "", address);
+    localStorage.setItem(KEY, own);
+}
 
 /** What the server says where it has no answer. */
 export class NoAnswer extends Error {
@@ -26,7 +28,8 @@ export class NoAnswer extends Error {
 }
 
 /**
- * Asks a question and tells its last line; each one before it goes to `line`. Who aborts `signal` ends the work on the server.
+ * Asks a question and tells its last line, with the name of a page where there is one; each line before it goes to `line`. Who aborts `signal`
+ * ends the work on the server.
  */
 export async function ask(path, question, { signal, line } = {}) {
     let response;
@@ -47,6 +50,7 @@ export async function ask(path, question, { signal, line } = {}) {
     const take = text => {
         const found = JSON.parse(text);
         if (found.kind === "done" || found.kind === "error") last = found;
+        else if (found.kind === "page") last.page = found.page;
         else line?.(found);
     };
     for (;;) {

@@ -1,6 +1,6 @@
 // The page as a whole: the text to the left, what can be said of it to the right.
 
-import { ask, element } from "/ask.js";
+import { ask, element, enter } from "/ask.js";
 import { Answers } from "/answers.js";
 import { Map_ } from "/map.js";
 import { Models } from "/models.js";
@@ -9,7 +9,7 @@ import { Observe } from "/observe.js";
 import { Text } from "/text.js";
 
 /** A text is read when it has not changed for so long, in ms. */
-const QUIET = 40;
+const QUIET = 25;
 /** A text in a link, or kept for the next time, is no longer than this. */
 const LONGEST = 4 << 20;
 const KEPT = "palmistry-text";
@@ -40,6 +40,7 @@ const by = id => document.getElementById(id);
 class Lab {
     async begin() {
         this.jobs = new Set();
+        await enter();
         this.session = await ask("session", {});
         by("version").textContent = this.session.version;
         this.text = new Text(by("editor"), {
@@ -77,9 +78,10 @@ class Lab {
         return { text: this.text.text, file: this.file };
     }
 
-    /** Puts another text here; `file` is where it would stand. */
-    put(text, file = "") {
+    /** Puts another text here; `file` is where it would stand, and `was` what stands there now. */
+    put(text, file = "", was = null) {
         this.file = file;
+        this.was = was;
         by("file-name").textContent = file;
         this.panels.answers.clear();
         this.text.set(text);
@@ -248,8 +250,9 @@ class Lab {
             if (!file) return;
         }
         try {
-            await ask("save", { file, text: this.text.text });
-            this.file = file;
+            const { text } = this.text;
+            await ask("save", { file, text, was: file === this.file ? this.was : null });
+            [this.file, this.was] = [file, text];
             by("file-name").textContent = file;
             by("state").textContent = `saved: ${file}`;
         } catch (error) {
@@ -286,7 +289,7 @@ class Lab {
             if (kind === "notebook") download(`${name}.ipynb`, "application/x-ipynb+json", notebook(this.text.text, this.draft?.title ?? name));
             if (kind === "page") {
                 const { page } = await this.run("the page", signal => ask("answer", { ask: "page", ...this.question() }, { signal }));
-                download(`${name}.html`, "text/html", page);
+                download(`${name}.html`, "text/html", await (await fetch(`/page/${page}`)).text());
             }
         } catch (error) {
             if (error.name !== "AbortError") this.notice(error);

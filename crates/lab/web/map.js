@@ -4,6 +4,8 @@ import { ask, element, refusal, shown } from "/ask.js";
 import { COLORS, chart } from "/chart.js";
 
 const CELLS = 96;
+/** A pointer that has not moved for so long rests, in ms. */
+const RESTS = 150;
 
 /** From light, which is well, to dark; of three tones between which every step is a step of light. */
 function tone(part) {
@@ -21,7 +23,7 @@ export class Map_ {
         Object.assign(this, { lab, panel, values: new Map() });
         this.settings = element("div", { class: "row" });
         this.sliders = element("div", { class: "sliders", role: "group", "aria-label": "Values of what is fixed" });
-        this.canvas = element("canvas", { width: CELLS, height: CELLS, tabindex: 0, role: "img", "aria-label": "Map; arrow keys move the pointer, Enter decides the rank there" });
+        this.canvas = element("canvas", { width: CELLS, height: CELLS, tabindex: 0, role: "img", "aria-label": "Map; arrow keys move the pointer" });
         this.read = element("p", { class: "read", role: "status", "aria-live": "polite" });
         this.up = element("div", { class: "up" });
         this.across = element("div", { class: "across" });
@@ -29,7 +31,7 @@ export class Map_ {
         this.line = element("div");
         this.lineAsked = element("div", { class: "row" });
         panel.append(
-            element("p", { class: "hint" }, "How well the worst unknown, or one, is observable: its standard deviation over its prior one, where each Lie derivative is measured up to its own range (computed, not certified). Light is well; dark is badly; green is unobservable or not to be told from it; white is a pole. A click decides the rank at that state."),
+            element("p", { class: "hint" }, "How well the worst unknown, or one, is observable: its standard deviation over its prior one, where each Lie derivative is measured up to its own range (computed, not certified). Light is well; dark is badly; green is unobservable or not to be told from it; white is a pole. Where the pointer rests the rank is decided, by exact arithmetic at that very state."),
             this.settings, this.sliders, this.failure,
             element("div", { class: "axes" }, this.up, element("div", { class: "picture" }, this.canvas), this.across),
             this.read, element("h2", {}, "Along a line"),
@@ -37,6 +39,7 @@ export class Map_ {
             this.lineAsked, this.line);
         this.canvas.addEventListener("pointermove", event => this.point(event));
         this.canvas.addEventListener("click", event => { this.point(event); this.decide(); });
+        this.canvas.addEventListener("pointerleave", () => clearTimeout(this.resting));
         this.canvas.addEventListener("keydown", event => this.key(event));
     }
 
@@ -164,6 +167,7 @@ export class Map_ {
         const box = this.canvas.getBoundingClientRect();
         this.place = [(event.clientX - box.left) / box.width, 1 - (event.clientY - box.top) / box.height];
         this.told();
+        this.rests();
     }
 
     key(event) {
@@ -175,6 +179,7 @@ export class Map_ {
         const place = this.place ?? [0.5, 0.5];
         this.place = [place[0] + column / 48, place[1] + row / 48].map(value => Math.min(Math.max(value, 0), 0.999));
         this.told();
+        this.rests();
     }
 
     /** The state under the pointer. */
@@ -197,15 +202,25 @@ export class Map_ {
         this.read.textContent = `${x} = ${shown(at[x])}, ${y} = ${shown(at[y])}: ${told}`;
     }
 
+    /** The certified rank under the pointer, when it rests. */
+    rests() {
+        clearTimeout(this.resting);
+        this.resting = setTimeout(() => this.decide(), RESTS);
+    }
+
     async decide() {
-        if (!this.place) return;
+        clearTimeout(this.resting);
+        if (!this.place || !this.grid) return;
+        this.told();
         const before = this.read.textContent;
+        const { place } = this;
         try {
             const found = await ask("answer", { ask: "state", ...this.lab.question(), at: this.state() });
+            if (place !== this.place) return;
             const how = found.certified ? "certified" : "computed";
             this.read.textContent = `${before}; ${found.rank == null ? "there is no rank: a pole, or not decided" : `rank ${found.rank} of ${found.dimension} (${how})`}`;
         } catch (error) {
-            this.read.textContent = `${before}; ${error.message}`;
+            if (place === this.place) this.read.textContent = `${before}; ${error.message}`;
         }
     }
 

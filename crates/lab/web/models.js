@@ -4,7 +4,7 @@ import { ask, element, refusal } from "/ask.js";
 import { movingScene } from "/scene.js";
 
 /** The names of papers. */
-const PAPERS = { benchmarks: "Models that people know", moll2002: "Moll 2002: shapes by touch", martinelli2005: "Martinelli 2005: a robot and beacons", hermann1977: "Hermann 1977: nonlinear observability", koteich2015: "Koteich 2015: synchronous machines" };
+const PAPERS = { examples: "Examples of the book", benchmarks: "Models that people know", moll2002: "Moll 2002: shapes by touch", martinelli2005: "Martinelli 2005: a robot and beacons", hermann1977: "Hermann 1977: nonlinear observability", koteich2015: "Koteich 2015: synchronous machines" };
 
 export class Models {
     constructor(panel, lab) {
@@ -33,7 +33,7 @@ export class Models {
         const count = (number, what) => `${number} ${what}${number === 1 ? "" : "s"}`;
         const card = model => element("button", { title: model.about, "data-file": model.file, onclick: () => this.open(model.file) },
             element("b", {}, model.title ?? model.file), element("small", {}, `${count(model.states, "state")}, ${count(model.outputs, "output")}, ${count(model.claims, "claim")}`), element("small", {}, model.about.slice(0, 120)));
-        const scene = one => element("button", { "data-file": one.file, onclick: () => this.play(one) }, element("b", {}, one.title ?? one.file), element("small", {}, "a scene: the body moves, and its shape is recovered"));
+        const scene = one => element("button", { "data-file": one.file, onclick: () => this.play(one) }, element("b", {}, one.title ?? one.file), element("small", {}, "a scene: it is simulated, measured and estimated"));
         return element("details", { open: folder === "benchmarks" }, element("summary", {}, element("b", {}, PAPERS[folder] ?? folder), ` (${models.length})`),
             element("div", { class: "cards" }, models.map(card)), scenes.length ? element("h2", {}, "Scenes") : null, element("div", { class: "cards" }, scenes.map(scene)));
     }
@@ -53,8 +53,7 @@ export class Models {
         this.scene.scrollIntoView();
         try {
             const { page, motion, observed } = await this.lab.run(scene.title ?? scene.file, signal => ask("answer", { ask: "scene", scene: scene.file }, { signal }));
-            const kept = await ask("page", { page });
-            this.scene.replaceChildren(element("h2", {}, scene.title ?? scene.file), motion ? movingScene(motion, observed.shape) ?? "" : "", element("iframe", { src: `/page/${kept.page}`, title: scene.title ?? scene.file, sandbox: "allow-scripts" }));
+            this.scene.replaceChildren(element("h2", {}, scene.title ?? scene.file), motion ? movingScene(motion, observed.shape) ?? "" : "", element("iframe", { src: `/page/${page}`, title: scene.title ?? scene.file, sandbox: "allow-scripts" }));
         } catch (error) {
             this.scene.replaceChildren(error.name === "AbortError" ? element("p", {}, "stopped") : refusal(error));
         }
@@ -73,7 +72,7 @@ export class Models {
     async read(file) {
         try {
             const { text } = await ask("read", { file });
-            this.lab.put(text, file);
+            this.lab.put(text, file, text);
             this.lab.tab("answers");
         } catch (error) {
             this.lab.notice(error);

@@ -1,6 +1,7 @@
 // Estimates from a recording that is dropped here, or from a simulated one whose noise and length are sliders.
 
 import { ask, element, refusal, shown } from "/ask.js";
+import { COLORS, chart } from "/chart.js";
 
 const QUIET = 250;
 /** Longer recordings are for the command. */
@@ -16,7 +17,7 @@ function table(csv) {
 
 export class Observe {
     constructor(panel, lab) {
-        Object.assign(this, { lab, panel, chosen: new Set(), csv: null, columns: new Map() });
+        Object.assign(this, { lab, panel, chosen: new Set(), trade: [], csv: null, columns: new Map() });
         const number = (name, value, attributes, label) => {
             const told = element("output", {}, shown(attributes.log ? 10 ** value : value));
             const slider = element("input", {
@@ -78,6 +79,7 @@ export class Observe {
         this.chosen.clear();
         this.unknowns.replaceChildren(element("legend", {}, "to be estimated"), element("div", { class: "row" }, draft.symbols.filter(symbol => !symbol.signal).map(box)));
         this.result.replaceChildren();
+        this.trade = [];
         this.map();
     }
 
@@ -165,6 +167,22 @@ export class Observe {
         }
     }
 
+    /** Speed against accuracy: a point for each estimate since the text changed, by its time and its greatest bound or error. */
+    tradeOf(observed) {
+        for (const { end, seconds } of observed.observers ?? []) {
+            const states = Object.values(end?.states ?? {});
+            const size = state => Math.abs(state.recovered) || 1;
+            const most = key => Math.max(...states.map(state => (state[key] == null ? NaN : Math.abs(state[key]) / size(state))));
+            if (states.length > 0 && seconds > 0) this.trade.push({ seconds, bound: most("bound"), error: most("error") });
+        }
+        this.trade = this.trade.slice(-40);
+        if (this.trade.length < 2) return element("div");
+        const curve = (name, key, color) => ({ name, color, dots: true, dash: "1 4", x: this.trade.map(one => one.seconds), y: this.trade.map(one => (one[key] > 0 ? one[key] : NaN)) });
+        const curves = [curve("bound", "bound", COLORS[0]), curve("error", "error", COLORS[1])].filter(curve => curve.y.some(Number.isFinite));
+        return element("figure", {}, chart({ curves, x: "s of the observer", y: "greatest of all, relative", log: [true, true], label: "Speed against accuracy of the estimates so far" }),
+            element("figcaption", {}, `Speed against accuracy: the last ${this.trade.length} estimates, in their order.`));
+    }
+
     async told({ observed, page, scene }, took) {
         const parts = [];
         for (const observer of observed.observers ?? []) {
@@ -177,10 +195,9 @@ export class Observe {
             if (rows.length) parts.push(element("div", { class: "wide" }, element("table", { class: "estimates" }, element("thead", {}, element("tr", {}, heads.map(head => element("th", {}, head)))), element("tbody", {}, rows))));
             if (observer.seconds != null) parts.push(element("p", { class: "hint", "data-seconds": observer.seconds }, `${shown(observer.seconds, 2)} s of the observer, ${shown(took / 1000, 2)} s in all`));
         }
-        this.result.replaceChildren(...parts);
+        this.result.replaceChildren(...parts, this.tradeOf(observed));
         if (page) {
-            const kept = await ask("page", { page });
-            this.result.append(element("iframe", { src: `/page/${kept.page}`, title: "Estimates, bands, residuals and the test of fit", sandbox: "allow-scripts" }));
+            this.result.append(element("iframe", { src: `/page/${page}`, title: "Estimates, bands, residuals and the test of fit", sandbox: "allow-scripts" }));
         }
         if (scene) this.result.append(element("details", {}, element("summary", {}, "The scene, for 'palmistry observe'"), element("pre", {}, scene)));
     }

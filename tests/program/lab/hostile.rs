@@ -90,6 +90,13 @@ fn malformed(lab: &Lab) -> Vec<Case> {
         case("a preflight", with(&[("POST ", "OPTIONS ")]), &[405]),
         case("a question by GET", get(&format!("/api/answer?token={token}")), &[404]),
         case("no such question", with(&[("/api/answer", "/api/shell")]), &[404]),
+        case("a code that is none", with(&[("/api/answer", "/api/enter")]), &[403]),
+        case(
+            "a code from a stranger's page",
+            with(&[("/api/answer", "/api/enter"), (&origin, "origin: http://evil.example\r\n")]),
+            &[403],
+        ),
+        case("a page of one's own", with(&[("/api/answer", "/api/page")]), &[404]),
         case("a folder that is not served", with(&[("/api/answer", "/api/../../etc/passwd")]), &[404]),
         case("a length that is none", with(&[("content-length: ", "content-length: -")]), &[0, 400]),
         case(
@@ -276,7 +283,8 @@ fn hostile_requests_get_nothing_and_leave_nothing() {
         let reply = lab
             .raw(&lab.request("answer", &question.to_string()))
             .unwrap_or_else(|| panic!("{what}: no reply"));
-        let last = reply.body.lines().last().and_then(|line| serde_json::from_str::<Value>(line).ok());
+        let lines = reply.body.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+        let last = lines.filter(|line| line["kind"] != "page").last();
         let last = last.unwrap_or_else(|| panic!("{what}: {}", reply.body));
         // an answer, or why there is none: never a process that fell
         assert!(["done", "error"].iter().any(|kind| last["kind"] == *kind), "{what}: {last}");

@@ -134,14 +134,23 @@ fn a_recording_that_is_dropped_is_estimated_from() {
     let text = "system \"A spring\"\nstate x, v\nparam k = 3   # over mass\ndrift f\n  x' = v\n  v' = -k*x\noutput x\nsample x in [-1, 1] v in [-1, 1]\n";
     let columns =
         json!({ "time": { "from": "ms", "unit": "ms" }, "x": { "from": "deflection", "unit": null } });
-    let found = lab.last(&json!({
-        "ask": "observe", "text": text, "estimate": ["x", "v", "k"], "window": 199,
-        "from": { "record": { "csv": csv, "columns": columns } },
-    }));
+    let mut lines = lab.ask(
+        "answer",
+        &json!({
+            "ask": "observe", "text": text, "estimate": ["x", "v", "k"], "window": 199,
+            "from": { "record": { "csv": csv, "columns": columns } },
+        }),
+    );
+    let (page, found) = (lines.pop().expect("a page"), lines.pop().expect("an answer"));
     assert_eq!(found["kind"], "done", "{found}");
     let states = &found["observed"]["observers"][0]["end"]["states"];
     assert!((states["k"]["recovered"].as_f64().unwrap() - 4.0).abs() < 1e-6, "{states}");
-    assert!(found["page"].as_str().unwrap().contains("A spring"));
+    let path = format!(
+        "GET /page/{} HTTP/1.1\r\nhost: {}\r\nconnection: close\r\n\r\n",
+        page["page"].as_str().unwrap(),
+        lab.host
+    );
+    assert!(lab.raw(path.as_bytes()).expect("a page").body.contains("A spring"));
     // the same from a simulation, with an input field that nothing in the file drives
     let driven = text.replace("output x", "input push\n  x' = 0\n  v' = 1\noutput x");
     let found = lab.last(&json!({
@@ -226,7 +235,8 @@ fn a_question_has_no_more_memory_than_it_may() {
 #[test]
 fn a_folder_is_served() {
     let folder = folder();
-    write(&folder, "base.proof", "system \"b\"\nstate x\nlet a = 2*x\n");
+    let base = "system \"b\"\nstate x\nlet a = 2*x\n";
+    write(&folder, "base.proof", base);
     let user = "system \"u\"\nuse b = \"base.proof\"\nstate x\nclaim 1: b.a = x + x\n";
     write(&folder, "user.proof", user);
     let lab = Lab::begin(&["--port", "0", folder.path().to_str().unwrap()]);
@@ -241,9 +251,14 @@ fn a_folder_is_served() {
     assert_eq!(claims(user)[0]["claim"]["verdict"], "proved");
     let before =
         lab.last(&json!({ "ask": "draft", "file": "user.proof", "text": user }))["claims"][0]["key"].clone();
-    let saved =
-        lab.ask("save", &json!({ "file": "base.proof", "text": "system \"b\"\nstate x\nlet a = 3*x\n" }));
+    let saved = lab.ask(
+        "save",
+        &json!({ "file": "base.proof", "text": "system \"b\"\nstate x\nlet a = 3*x\n", "was": base }),
+    );
     assert_eq!(saved, [json!({ "kind": "done" })]);
+    // somebody else's words are not written over
+    let again = lab.ask("save", &json!({ "file": "base.proof", "text": "gone", "was": base }));
+    assert_eq!(again[0]["kind"], "error");
     // a verdict depends on what is imported
     let after =
         lab.last(&json!({ "ask": "draft", "file": "user.proof", "text": user }))["claims"][0]["key"].clone();

@@ -14,6 +14,7 @@ mod ranks;
 mod run;
 
 use place::Place;
+pub(crate) use run::PAGE;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

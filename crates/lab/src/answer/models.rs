@@ -3,6 +3,7 @@
 use super::Refused;
 use palmistry_io::file::{PACKED, files_in, packed_folders};
 use palmistry_lang::{DeclarationKind, Outline, load, with_plain_line_ends};
+use palmistry_workbench::paper::MANIFEST;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -22,7 +23,10 @@ fn paper(folder: &str) -> Value {
         files.into_iter().filter(|file| file.extension().is_some_and(|found| found == end)).collect()
     };
     let models: Vec<Value> = with(&path, "proof").iter().map(|file| model_of(file)).collect();
-    let scenes: Vec<Value> = with(&path.join("scenes"), "toml").iter().map(|file| scene_of(file)).collect();
+    // a paper has its scenes in a folder, examples have them beside their systems
+    let mut scenes = with(&path.join("scenes"), "toml");
+    scenes.extend(with(&path, "toml").into_iter().filter(|file| !file.ends_with(MANIFEST)));
+    let scenes: Vec<Value> = scenes.iter().map(|file| scene_of(file)).collect();
     json!({ "folder": folder, "models": models, "scenes": scenes })
 }
 

@@ -136,6 +136,8 @@ impl ObserveAsked {
     }
 }
 
+/// The page of an answer, in the folder of its question.
+pub(crate) const PAGE: &str = "the-page-of-this-answer.html";
 const RECORD: &str = "record.csv";
 const SCENE: &str = "scene.toml";
 
@@ -196,8 +198,9 @@ impl Ran {
     }
 }
 
-fn page_in(folder: &Path) -> Option<String> {
-    std::fs::read_to_string(folder.join("index.html")).ok()
+/// Puts the page in a folder where the server looks for one; whether there is one.
+fn keep_page(folder: &Path, work: &Path) -> bool {
+    std::fs::rename(folder.join("index.html"), work.join(PAGE)).is_ok()
 }
 
 /// Estimates, with the page that `observe` writes.
@@ -226,7 +229,9 @@ pub(super) fn observe(place: &Place<'_>, asked: &ObserveAsked, work: &Path) -> R
             (system.symbol_name(symbol).to_owned(), system.dimension_of(symbol).map(Dimension::in_words))
         })
         .collect();
-    Ok(json!({ "observed": found, "scene": scene, "units": units, "page": page_in(&folder.join("page")) }))
+    Ok(
+        json!({ "observed": found, "scene": scene, "units": units, "has_page": keep_page(&folder.join("page"), work) }),
+    )
 }
 
 /// A scene that came with the program.
@@ -244,7 +249,7 @@ pub(super) fn scene(scene: &Path, work: &Path) -> Result<Value, Refused> {
         Ok(found) => found,
     };
     let motion = std::fs::read_to_string(work.join("motion.csv")).ok();
-    Ok(json!({ "observed": found, "motion": motion, "page": page_in(&work.join("page")) }))
+    Ok(json!({ "observed": found, "motion": motion, "has_page": keep_page(&work.join("page"), work) }))
 }
 
 /// The page of the text as a paper of one file.
@@ -256,7 +261,7 @@ pub(super) fn page(place: &Place<'_>, work: &Path) -> Result<Value, Refused> {
     let out = work.join("page-of-this-paper");
     let (folder, out) = (folder.to_string_lossy().into_owned(), out);
     let ran = command(&["verify", &folder, "--out", &out.to_string_lossy()], work)?;
-    page_in(&out).map(|page| json!({ "page": page })).ok_or_else(|| Refused::new(ran.said))
+    if keep_page(&out, work) { Ok(json!({ "has_page": true })) } else { Err(Refused::new(ran.said)) }
 }
 
 /// A proof file from files of another program: the model, and what it needs beside it.

@@ -20,7 +20,7 @@ pub(super) fn respond(folder: &Path, path: &str, asked: &Value) -> Value {
             Ok(text) => json!({ "kind": "done", "text": text }),
             Err(why) => error(&why, ""),
         },
-        _ => match save(folder, text(asked, "file"), text(asked, "text")) {
+        _ => match save(folder, text(asked, "file"), text(asked, "text"), asked["was"].as_str()) {
             Ok(()) => json!({ "kind": "done" }),
             Err(why) => error(&why, "download it instead, or choose another name"),
         },
@@ -90,9 +90,18 @@ fn read(folder: &Path, name: &str) -> Result<String, String> {
     palmistry_io::file::read_text(&path, LONGEST).map_err(|why| format!("{name} cannot be read: {why}"))
 }
 
-/// Writes a file whole, or leaves the old one.
-fn save(folder: &Path, name: &str, text: &str) -> Result<(), String> {
+/// Writes a file whole, or leaves the old one. What stands there has to be what the page knows of it, nothing where it knows of none:
+/// somebody else may have written.
+fn save(folder: &Path, name: &str, text: &str, was: Option<&str>) -> Result<(), String> {
     let path = inside(folder, name)?;
+    let is = if path.exists() { Some(read(folder, name)?) } else { None };
+    match (was, is) {
+        (None, Some(_)) => {
+            return Err(format!("{name} is there already, and this text was not opened from it"));
+        }
+        (Some(was), Some(is)) if was != is => return Err(format!("{name} was changed since it was opened")),
+        _ => {}
+    }
     let written = write_whole(&path, |file| file.write_all(text.as_bytes()));
     written.map_err(|why| format!("{name} cannot be written: {why}"))
 }
@@ -110,7 +119,7 @@ mod tests {
         std::fs::write(folder.join("notes.txt"), "notes").expect("written");
         std::fs::write(folder.join(".hidden.proof"), "hidden").expect("written");
         for name in ["a.proof", "sub/b.proof"] {
-            save(&folder, name, "text").expect("it lies within");
+            save(&folder, name, "text", None).expect("it lies within");
             assert_eq!(read(&folder, name).as_deref(), Ok("text"));
         }
         assert_eq!(list(&folder), ["a.proof", "sub/b.proof"]);
@@ -138,7 +147,8 @@ mod tests {
             "sub",
         ] {
             assert!(read(&folder, name).is_err(), "{name}");
-            assert!(save(&folder, name, "x").is_err(), "{name}");
+            assert!(save(&folder, name, "x", None).is_err(), "{name}");
+            assert!(save(&folder, name, "x", Some("secret")).is_err(), "{name}");
         }
         assert_eq!(
             std::fs::read_to_string(outer.path().join("secret.proof")).expect("it is there"),

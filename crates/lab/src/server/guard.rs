@@ -1,8 +1,10 @@
 //! Who may ask. A page of another server that is open in the same browser may not: it has neither the token nor the origin.
 
+use super::work::random_name;
 use hyper::header::{HOST, HeaderMap, HeaderName, ORIGIN};
 use sha2::{Digest, Sha256};
 use std::net::SocketAddr;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The header that carries the token.
 const TOKEN: &str = "x-palmistry-token";
@@ -11,9 +13,17 @@ const TOKEN: &str = "x-palmistry-token";
 #[derive(Clone)]
 pub enum Access {
     /// Pages that were opened with this token, on this machine.
-    Token(String),
+    Token(Secrets),
     /// Everybody who reaches the address. Files are neither read nor written.
     Public,
+}
+
+/// What shows that a page is the user's own.
+#[derive(Clone)]
+pub struct Secrets {
+    token: String,
+    /// Buys the token, once: an address that a browser is started with is seen by all who list the processes of this machine.
+    code: Arc<Mutex<Option<String>>>,
 }
 
 impl std::fmt::Debug for Access {
@@ -32,8 +42,40 @@ impl Access {
     /// # Panics
     /// Where the system has none.
     pub fn with_token() -> Access {
-        Access::Token(super::work::random_name())
+        let code = Arc::new(Mutex::new(Some(random_name())));
+        Access::Token(Secrets { token: random_name(), code })
     }
+
+    /// The address of the page, for somebody to open: it is good as long as the lab runs.
+    pub fn address(&self, own: SocketAddr) -> String {
+        match self {
+            Access::Token(secrets) => format!("http://{own}/?token={}", secrets.token),
+            Access::Public => format!("http://{own}/"),
+        }
+    }
+
+    /// The same for a browser to be started with: it is good once.
+    pub fn address_once(&self, own: SocketAddr) -> String {
+        let Access::Token(secrets) = self else { return self.address(own) };
+        let code = secrets.code.lock().unwrap_or_else(PoisonError::into_inner);
+        code.as_ref().map_or_else(|| self.address(own), |code| format!("http://{own}/?code={code}"))
+    }
+
+    /// The token, for the code that is good once.
+    pub(super) fn token_for(&self, given: &str) -> Option<String> {
+        let Access::Token(secrets) = self else { return None };
+        let mut code = secrets.code.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_it = code.as_ref().is_some_and(|code| is_same(code, given));
+        is_it.then(|| {
+            *code = None;
+            secrets.token.clone()
+        })
+    }
+}
+
+/// Whether two secrets are one; sums are compared, so that the time tells nothing of the letters.
+fn is_same(one: &str, other: &str) -> bool {
+    Sha256::digest(one) == Sha256::digest(other)
 }
 
 /// Why a request is not answered.
@@ -76,6 +118,14 @@ pub(super) fn of_this_host(access: &Access, own: SocketAddr, headers: &HeaderMap
 
 /// Whether a question may be asked: from the page of this very server, with its token.
 pub(super) fn may_ask(access: &Access, own: SocketAddr, headers: &HeaderMap) -> Result<(), Refusal> {
+    is_of_this_page(access, own, headers)?;
+    let Access::Token(secrets) = access else { return Ok(()) };
+    let given = one(headers, HeaderName::from_static(TOKEN)).unwrap_or_default();
+    if is_same(&secrets.token, given) { Ok(()) } else { Err(Refusal::Token) }
+}
+
+/// Whether it comes from the page of this very server.
+pub(super) fn is_of_this_page(access: &Access, own: SocketAddr, headers: &HeaderMap) -> Result<(), Refusal> {
     of_this_host(access, own, headers)?;
     let host = one(headers, HOST).ok_or(Refusal::Host)?;
     // browsers name the origin of each question that a page asks by POST
@@ -91,15 +141,7 @@ pub(super) fn may_ask(access: &Access, own: SocketAddr, headers: &HeaderMap) -> 
     if headers.contains_key(&site) && one(headers, site) != Some("same-origin") {
         return Err(Refusal::Origin);
     }
-    match access {
-        Access::Public => Ok(()),
-        Access::Token(token) => {
-            let given = one(headers, HeaderName::from_static(TOKEN)).unwrap_or_default();
-            // sums are compared, so that the time tells nothing of the letters
-            let is_same = Sha256::digest(given) == Sha256::digest(token);
-            if is_same { Ok(()) } else { Err(Refusal::Token) }
-        }
-    }
+    Ok(())
 }
 
 /// The one value of a header; nothing where there are several.
@@ -125,7 +167,8 @@ mod tests {
     #[test]
     fn only_the_page_itself_may_ask() {
         let own: SocketAddr = "127.0.0.1:8417".parse().expect("an address");
-        let access = Access::Token("secret".to_owned());
+        let code = Arc::new(Mutex::new(Some("once".to_owned())));
+        let access = Access::Token(Secrets { token: "secret".to_owned(), code });
         let ask = |pairs: &[(&'static str, &str)]| may_ask(&access, own, &headers(pairs));
         let good = [
             ("host", "127.0.0.1:8417"),
@@ -173,5 +216,11 @@ mod tests {
             Err(Refusal::Origin)
         );
         assert!(!format!("{access:?}").contains("secret"));
+        // the code buys the token once
+        assert!(access.address_once(own).ends_with("?code=once"));
+        assert_eq!(access.token_for("Once"), None);
+        assert_eq!(access.token_for("once").as_deref(), Some("secret"));
+        assert_eq!(access.token_for("once"), None);
+        assert_eq!(access.token_for(""), None);
     }
 }

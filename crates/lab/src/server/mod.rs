@@ -21,7 +21,7 @@ use tokio::sync::Semaphore;
 const PAUSE: Duration = Duration::from_millis(50);
 /// Whoever has not asked anything after this is no longer waited for.
 const HEAD: Duration = Duration::from_secs(15);
-/// More connections at once wait to be accepted.
+/// More connections at once are refused.
 const MOST_CONNECTIONS: usize = 1024;
 
 /// What a question may take.
@@ -33,6 +33,8 @@ pub struct Limits {
     pub dear: Duration,
     /// Memory of its process, in bytes.
     pub memory: u64,
+    /// The length of a question, in bytes: a text, or a recording.
+    pub question: usize,
     /// Questions at once, of all clients and of one.
     pub at_once: [usize; 2],
 }
@@ -111,8 +113,10 @@ impl LabServer {
                     tokio::time::sleep(PAUSE).await;
                     continue;
                 };
-                let Ok(permit) = connections.clone().acquire_owned().await else { return };
+                // one more is closed at once
+                let Ok(permit) = connections.clone().try_acquire_owned() else { continue };
                 let router = router.clone();
+                let longest = router.longest();
                 tokio::spawn(async move {
                     let service = hyper::service::service_fn(move |request| {
                         let router = router.clone();
@@ -122,8 +126,10 @@ impl LabServer {
                     });
                     let mut server = http1::Builder::new();
                     server.timer(TokioTimer::new()).header_read_timeout(HEAD).max_buf_size(64 << 10);
-                    // a connection that breaks is the other end's
-                    let _ = server.serve_connection(TokioIo::new(stream), service).await;
+                    // a connection that breaks is the other end's; one that takes nothing does not stay
+                    let _ =
+                        tokio::time::timeout(longest, server.serve_connection(TokioIo::new(stream), service))
+                            .await;
                     drop(permit);
                 });
             }

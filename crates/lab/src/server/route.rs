@@ -1,6 +1,6 @@
 //! Which request gets which response.
 
-use super::guard::{Access, may_ask, of_this_host};
+use super::guard::{Access, Refusal, is_of_this_page, may_ask, of_this_host};
 use super::pages::{NONCE, OF_AN_ANSWER, Pages, asset, policy};
 use super::work::{Effort, Lines, Workers, error, line, random_name};
 use super::{Limits, folder};
@@ -15,8 +15,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A longer question is refused: a proof file has at most 16 MiB, and a recording is not much longer.
-const LONGEST: usize = 32 << 20;
 /// Who sends a question more slowly is not waited for.
 const SENDING: Duration = Duration::from_secs(30);
 
@@ -28,7 +26,7 @@ pub(super) struct Router {
     own: SocketAddr,
     folder: Option<PathBuf>,
     workers: Arc<Workers>,
-    pages: Pages,
+    pages: Arc<Pages>,
 }
 
 impl Router {
@@ -41,7 +39,12 @@ impl Router {
     ) -> Router {
         let folder = folder.filter(|_| !matches!(access, Access::Public));
         let workers = Arc::new(Workers::new(program, folder.clone(), limits));
-        Router { access, own, folder, workers, pages: Pages::default() }
+        Router { access, own, folder, workers, pages: Arc::default() }
+    }
+
+    /// How long a connection may last: a dear question, and as long as it takes to send its answer.
+    pub fn longest(&self) -> Duration {
+        self.workers.limits.dear + 10 * SENDING
     }
 
     pub async fn respond(&self, request: Request<Incoming>, client: IpAddr) -> Answer {
@@ -68,18 +71,23 @@ impl Router {
                 Err(refusal) => refused(StatusCode::FORBIDDEN, refusal.words()),
             },
             Method::POST if path.starts_with("/api/") => {
-                if let Err(refusal) = may_ask(&self.access, self.own, request.headers()) {
+                // who has the code of the address that was opened has no token yet
+                let may = match path.as_str() {
+                    "/api/enter" => is_of_this_page(&self.access, self.own, request.headers()),
+                    _ => may_ask(&self.access, self.own, request.headers()),
+                };
+                if let Err(refusal) = may {
                     return refused(StatusCode::FORBIDDEN, refusal.words());
                 }
                 let kind = request.headers().get(CONTENT_TYPE).and_then(|kind| kind.to_str().ok());
                 if kind != Some("application/json") {
                     return refused(StatusCode::UNSUPPORTED_MEDIA_TYPE, "a question is a text in JSON");
                 }
-                let body = Limited::new(request.into_body(), LONGEST).collect();
+                let body = Limited::new(request.into_body(), self.workers.limits.question).collect();
                 match tokio::time::timeout(SENDING, body).await {
                     Ok(Ok(body)) => self.question(&path, body.to_bytes(), client).await,
                     Ok(Err(why)) if why.is::<LengthLimitError>() => {
-                        refused(StatusCode::PAYLOAD_TOO_LARGE, "a question is no longer than 32 MiB")
+                        refused(StatusCode::PAYLOAD_TOO_LARGE, "this question is longer than one may be here")
                     }
                     Ok(Err(_)) => refused(StatusCode::BAD_REQUEST, "the question did not come whole"),
                     Err(_) => refused(StatusCode::REQUEST_TIMEOUT, "the question did not come in time"),
@@ -122,9 +130,9 @@ impl Router {
                 "public": matches!(self.access, Access::Public),
                 "words": words(),
             })),
-            ("/api/page", _) => match asked["page"].as_str() {
-                Some(page) => lines_of(&json!({ "kind": "done", "page": self.pages.keep(page.to_owned()) })),
-                None => refused(StatusCode::BAD_REQUEST, "no page was given"),
+            ("/api/enter", _) => match self.access.token_for(asked["code"].as_str().unwrap_or_default()) {
+                Some(token) => lines_of(&json!({ "kind": "done", "token": token })),
+                None => refused(StatusCode::FORBIDDEN, Refusal::Token.words()),
             },
             ("/api/answer", _) => {
                 let is_cheap = matches!(
@@ -133,7 +141,8 @@ impl Router {
                 );
                 let effort = if is_cheap { Effort::Cheap } else { Effort::Dear };
                 let (sender, lines) = Lines::new();
-                tokio::spawn(self.workers.clone().answer(question, (client, effort), sender));
+                let (workers, pages) = (self.workers.clone(), self.pages.clone());
+                tokio::spawn(async move { workers.answer(question, (client, effort), sender, &pages).await });
                 answer_with(StatusCode::OK, "application/x-ndjson", Either::Right(lines))
             }
             ("/api/files" | "/api/read" | "/api/save", Some(served)) => {

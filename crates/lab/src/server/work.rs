@@ -1,6 +1,8 @@
 //! A question as a process of its own: within its time and its memory, ended when nobody waits for it any more.
 
 use super::Limits;
+use super::pages::Pages;
+use crate::answer::PAGE;
 use hyper::body::{Bytes, Frame};
 use serde_json::{Value, json};
 use std::collections::HashMap;
@@ -19,6 +21,8 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc};
 const LINES: usize = 64;
 /// A longer answer is cut off.
 const MOST_BYTES: u64 = 128 << 20;
+/// A last line that is not taken by then is not sent.
+const SENDING: Duration = Duration::from_secs(30);
 /// So much of what a process says on standard error is looked at.
 const MOST_SAID: u64 = 4 << 10;
 
@@ -127,6 +131,7 @@ impl Workers {
         question: Bytes,
         (client, effort): (IpAddr, Effort),
         lines: mpsc::Sender<Bytes>,
+        pages: &Pages,
     ) {
         let turn = tokio::select! {
             turn = self.turn(client, effort) => turn,
@@ -138,7 +143,7 @@ impl Workers {
             Effort::Dear => self.limits.dear,
         };
         let end = tokio::select! {
-            end = tokio::time::timeout(time, self.run(&question, time, &lines)) => match end {
+            end = tokio::time::timeout(time, self.run(&question, time, &lines, pages)) => match end {
                 Ok(end) => end,
                 Err(_) => Some(error(&format!("no answer within {} s, the time that a question has here", time.as_secs_f64()), "what was found until then is above")),
             },
@@ -147,12 +152,19 @@ impl Workers {
         };
         drop(turn);
         if let Some(end) = end {
-            let _ = lines.send(line(&end)).await;
+            // who takes no line any more gets no last one
+            let _ = tokio::time::timeout(SENDING, lines.send(line(&end))).await;
         }
     }
 
     /// Passes on the lines of a process; what there is to say where it has not come to its end.
-    async fn run(&self, question: &[u8], time: Duration, lines: &mpsc::Sender<Bytes>) -> Option<Value> {
+    async fn run(
+        &self,
+        question: &[u8],
+        time: Duration,
+        lines: &mpsc::Sender<Bytes>,
+        pages: &Pages,
+    ) -> Option<Value> {
         let cannot =
             |why: std::io::Error| Some(error(&format!("a question cannot be answered now: {why}"), ""));
         let work = match tempfile::tempdir() {
@@ -200,7 +212,9 @@ impl Workers {
         let kind =
             serde_json::from_slice::<Value>(&last).map(|last| last["kind"].clone()).unwrap_or_default();
         if ["done", "error"].iter().any(|end| kind == *end) {
-            return None;
+            // a page comes from the program alone, and not over the page that asks
+            let page = tokio::fs::read_to_string(work.path().join(PAGE)).await.ok();
+            return page.map(|page| json!({ "kind": "page", "page": pages.keep(page) }));
         }
         let why = match status {
             Ok(status) if status.code().is_none() => {
