@@ -18,7 +18,9 @@ function ticks(low, high, log) {
         const found = [];
         const step = Math.max(1, Math.ceil((high - low) / 7));
         for (let power = Math.ceil(low); power <= high; power += step) found.push(power);
-        return found;
+        // within a decade or two there are places between the powers
+        const between = [1, 2, 5].flatMap(digit => [Math.floor(low), Math.ceil(low)].map(power => Math.log10(digit) + power)).filter(at => at >= low && at <= high);
+        return found.length > 1 ? found : between.sort((a, b) => a - b);
     }
     const raw = (high - low) / 5;
     const size = 10 ** Math.floor(Math.log10(raw));
@@ -54,7 +56,7 @@ export function chart({ curves, x, y, label, log = [false, false], onpoint, mark
     const across = value => LEFT + (put[0](value) - range[0][0]) / (range[0][1] - range[0][0]) * (WIDTH - LEFT - RIGHT);
     const down = value => HEIGHT - BOTTOM - (put[1](value) - range[1][0]) / (range[1][1] - range[1][0]) * (HEIGHT - TOP - BOTTOM);
     const svg = drawn("svg", { class: "chart", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": label });
-    const name = (value, log) => log ? `1e${value}` : shown(value, 3);
+    const name = (value, log) => !log ? shown(value, 3) : Number.isInteger(value) && Math.abs(value) > 2 ? `1e${value}` : shown(10 ** value, 2);
     for (const at of ticks(...range[0], log[0])) {
         const place = across(log[0] ? 10 ** at : at);
         svg.append(drawn("line", { class: "grid", x1: place, x2: place, y1: TOP, y2: HEIGHT - BOTTOM }));

@@ -94,6 +94,7 @@ export class Observe {
             return;
         }
         this.csv = file ? await file.text() : null;
+        this.trade = [];
         this.name = file?.name;
         if (!file) this.file.value = "";
         this.columns.clear();
@@ -193,6 +194,11 @@ export class Observe {
                 element("td", {}, state.true == null ? "" : shown(state.true, 6)), element("td", {}, state.error == null ? "" : shown(state.error, 2))));
             parts.push(element("h2", {}, observer.method ?? observer.name ?? "estimate"));
             if (rows.length) parts.push(element("div", { class: "wide" }, element("table", { class: "estimates" }, element("thead", {}, element("tr", {}, heads.map(head => element("th", {}, head)))), element("tbody", {}, rows))));
+            const last = observer.updates?.at(-1);
+            if (last?.fit) {
+                const { fits, chi_square, degrees_of_freedom } = last.fit;
+                parts.push(element("p", { class: fits ? "good" : "bad", "data-fits": String(fits) }, `${last.standing}; ${fits ? "passes" : "does not pass"} the test of fit: chi-square ${shown(chi_square)} at ${degrees_of_freedom} degrees of freedom`));
+            }
             if (observer.seconds != null) parts.push(element("p", { class: "hint", "data-seconds": observer.seconds }, `${shown(observer.seconds, 2)} s of the observer, ${shown(took / 1000, 2)} s in all`));
         }
         this.result.replaceChildren(...parts, this.tradeOf(observed));

@@ -5,6 +5,7 @@
 mod browser;
 mod hostile;
 mod load;
+mod once;
 mod page;
 mod requests;
 

@@ -150,6 +150,23 @@ fn a_model_is_imported_stopped_and_linked() {
     browser.go(&link);
     assert_eq!(browser.text("document.querySelector('.cm-content').innerText"), text);
     assert_eq!(browser.text(VERDICTS), "proved proved");
+    // what is taken home: the text, a page, a notebook
+    browser.value("window.kept = {}; URL.createObjectURL = blob => { blob.text().then(text => { window.kept[blob.type] = text; }); return '#'; }; HTMLAnchorElement.prototype.click = () => {}");
+    for (kind, file) in
+        [("proof", "text/plain"), ("page", "text/html"), ("notebook", "application/x-ipynb+json")]
+    {
+        browser.value(&format!("(() => {{ const list = document.getElementById('export'); list.value = '{kind}'; list.dispatchEvent(new Event('change')); }})()"));
+        browser.until(&format!("window.kept['{file}']"));
+    }
+    assert_eq!(browser.text("window.kept['text/plain']"), PENDULUM);
+    assert!(browser.text("window.kept['text/html']").contains("A pendulum"));
+    let cells = "JSON.parse(window.kept['application/x-ipynb+json']).cells.map(cell => cell.source.join('')).join('\\n')";
+    assert!(browser.text(cells).contains("palmistry.System.parse(\"system"));
+    // what a name is
+    browser.value("window.at = (() => { const line = [...document.querySelectorAll('.cm-line')].find(one => one.textContent.includes(\"omega' =\")); const box = line.getBoundingClientRect(); return [box.left + 30, box.top + box.height/2]; })()");
+    let [x, y] = ["window.at[0]", "window.at[1]"].map(|at| browser.value(at));
+    browser.send("Input.dispatchMouseEvent", serde_json::json!({ "type": "mouseMoved", "x": x, "y": y }));
+    browser.until("document.querySelector('.cm-told')?.textContent.includes('state omega')");
     // a link that holds nothing, and one that would fill the memory
     for hash in ["#text=AAAA", "#text=____"] {
         browser.page();
