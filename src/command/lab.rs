@@ -6,7 +6,7 @@ use super::{Status, Unusable};
 use clap::Args;
 use palmistry::file::note;
 use palmistry::foreign::shown_path;
-use palmistry::lab::{Access, LabError, LabOptions, LabServer, Limits, answer, open_in_browser};
+use palmistry::lab::{Access, LabError, LabOptions, LabServer, QuestionLimits, answer, open_in_browser};
 use serde_json::{Value, json};
 use std::io::{Read, Write};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
@@ -31,7 +31,7 @@ const PORT: u16 = 8417;
   palmistry lab                             an empty page; nothing is written
   palmistry lab mypaper                     with the proof files of a folder
   palmistry lab --no-open --port 9000       print the address, and open no browser
-  palmistry lab --public 0.0.0.0:8417       a server for a group: no files, and a limit for each client")]
+  palmistry lab --public 0.0.0.0:8417       for a group: no files, and a limit for each client")]
 pub(crate) struct Lab {
     /// The folder whose proof files the page opens and saves.
     #[arg(value_name = "FOLDER")]
@@ -111,14 +111,20 @@ impl Lab {
                 let [cheap, dear] = [10, 1800].map(Duration::from_secs);
                 (
                     Access::with_token(),
-                    Limits { cheap, dear, memory: 8 << 30, question: 32 << 20, at_once: [cores.max(4); 2] },
+                    QuestionLimits {
+                        cheap,
+                        dear,
+                        memory: 8 << 30,
+                        question: 32 << 20,
+                        at_once: [cores.max(4); 2],
+                    },
                 )
             }
             Some(_) => {
                 let [cheap, dear] = [10, 30].map(Duration::from_secs);
                 (
                     Access::Public,
-                    Limits {
+                    QuestionLimits {
                         cheap,
                         dear,
                         memory: 2 << 30,

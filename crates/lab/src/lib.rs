@@ -10,7 +10,7 @@ mod answer;
 mod server;
 
 pub use answer::answer;
-pub use server::{Access, LabError, LabOptions, LabServer, Limits};
+pub use server::{Access, LabError, LabOptions, LabServer, QuestionLimits};
 
 /// Opens an address in the browser of whoever sits here.
 ///

@@ -468,7 +468,8 @@ mod tests {
 
     fn of_cells([x, y]: [CoordinateRange<f64>; 2], width: usize, deviations: Vec<Option<f64>>) -> Map {
         let height = deviations.len() / width;
-        Map { x, y, width, height, deviations, shown: vec![], scales: no_scales() }
+        let worst = vec![None; deviations.len()];
+        Map { x, y, width, height, deviations, worst, shown: vec![], scales: no_scales() }
     }
 
     /// What is infinite is neither the largest number nor a pole, and light is well observable.

@@ -1,6 +1,6 @@
 //! Who may ask. A page of another server that is open in the same browser may not: it has neither the token nor the origin.
 
-use super::work::random_name;
+use super::secret::random_name;
 use hyper::header::{HOST, HeaderMap, HeaderName, ORIGIN};
 use sha2::{Digest, Sha256};
 use std::net::SocketAddr;

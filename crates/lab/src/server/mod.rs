@@ -4,6 +4,7 @@ mod folder;
 mod guard;
 mod pages;
 mod route;
+mod secret;
 mod work;
 
 pub use guard::Access;
@@ -26,7 +27,7 @@ const MOST_CONNECTIONS: usize = 1024;
 
 /// What a question may take.
 #[derive(Clone, Copy, Debug)]
-pub struct Limits {
+pub struct QuestionLimits {
     /// The time of a question whose answer is waited for while one writes.
     pub cheap: Duration,
     /// The time of one that somebody asked by a button.
@@ -49,7 +50,7 @@ pub struct LabOptions {
     /// The folder whose files may be read, and written where the page says so.
     pub folder: Option<PathBuf>,
     /// What one question may take.
-    pub limits: Limits,
+    pub limits: QuestionLimits,
     /// The program that answers, with the arguments before the limits.
     pub program: (PathBuf, Vec<String>),
 }

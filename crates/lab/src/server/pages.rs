@@ -1,6 +1,6 @@
 //! What the browser is given: the page with its style and scripts, all of them in the program, and pages that answers have written.
 
-use super::work::random_name;
+use super::secret::random_name;
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 

@@ -2,8 +2,9 @@
 
 use super::guard::{Access, Refusal, is_of_this_page, may_ask, of_this_host};
 use super::pages::{NONCE, OF_AN_ANSWER, Pages, asset, policy};
-use super::work::{Effort, Lines, Workers, error, line, random_name};
-use super::{Limits, folder};
+use super::secret::random_name;
+use super::work::{Effort, Lines, Workers, error, line};
+use super::{QuestionLimits, folder};
 use http_body_util::{BodyExt, Either, Full, LengthLimitError, Limited};
 use hyper::body::{Bytes, Incoming};
 use hyper::header::{ALLOW, CACHE_CONTROL, CONTENT_SECURITY_POLICY, CONTENT_TYPE, HeaderValue};
@@ -34,7 +35,7 @@ impl Router {
         access: Access,
         own: SocketAddr,
         folder: Option<PathBuf>,
-        limits: Limits,
+        limits: QuestionLimits,
         program: (PathBuf, Vec<String>),
     ) -> Router {
         let folder = folder.filter(|_| !matches!(access, Access::Public));

@@ -1,6 +1,6 @@
 //! A question as a process of its own: within its time and its memory, ended when nobody waits for it any more.
 
-use super::Limits;
+use super::QuestionLimits;
 use super::pages::Pages;
 use crate::answer::PAGE;
 use hyper::body::{Bytes, Frame};
@@ -26,21 +26,11 @@ const SENDING: Duration = Duration::from_secs(30);
 /// So much of what a process says on standard error is looked at.
 const MOST_SAID: u64 = 4 << 10;
 
-/// A name of 128 random bits.
-///
-/// # Panics
-/// Where the system has no random numbers.
-pub(super) fn random_name() -> String {
-    let mut bits = [0; 16];
-    rand::TryRng::try_fill_bytes(&mut rand::rngs::SysRng, &mut bits).expect("the system has random numbers");
-    bits.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
 /// What questions are answered by.
 pub(super) struct Workers {
     program: (PathBuf, Vec<String>),
     folder: Option<PathBuf>,
-    pub limits: Limits,
+    pub limits: QuestionLimits,
     /// Of all clients, and of each.
     all: Gates,
     clients: Mutex<HashMap<IpAddr, Gates>>,
@@ -88,7 +78,7 @@ pub(super) struct Turn {
 const MOST_CLIENTS: usize = 4096;
 
 impl Workers {
-    pub fn new(program: (PathBuf, Vec<String>), folder: Option<PathBuf>, limits: Limits) -> Workers {
+    pub fn new(program: (PathBuf, Vec<String>), folder: Option<PathBuf>, limits: QuestionLimits) -> Workers {
         let all = Gates::new(limits.at_once[0]);
         Workers { program, folder, limits, all, clients: Mutex::default() }
     }
