@@ -116,6 +116,8 @@ impl Lab {
                         dear,
                         memory: 8 << 30,
                         question: 32 << 20,
+                        places: [64; 2],
+                        connections: [256; 2],
                         at_once: [cores.max(4); 2],
                     },
                 )
@@ -128,7 +130,9 @@ impl Lab {
                         cheap,
                         dear,
                         memory: 2 << 30,
-                        question: 2 << 20,
+                        question: 1 << 20,
+                        places: [512, 128],
+                        connections: [1024, 256],
                         at_once: [cores, 2.min(cores)],
                     },
                 )
@@ -177,8 +181,10 @@ impl OfOne {
         let out = Mutex::new(std::io::stdout());
         let tell = |line: Value| {
             if let Ok(mut out) = out.lock() {
-                // who does not read any more has ended this process
-                let _ = writeln!(out, "{line}").and_then(|()| out.flush());
+                if writeln!(out, "{line}").and_then(|()| out.flush()).is_err() {
+                    // nobody reads any more
+                    std::process::exit(1);
+                }
             }
         };
         let (work, within) = (work.to_owned(), self.within.clone());

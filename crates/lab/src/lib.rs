@@ -25,6 +25,9 @@ pub fn open_in_browser(url: &str) -> std::io::Result<()> {
 #[cfg(unix)]
 pub fn limit_this_process(memory: Option<u64>, seconds: Option<u64>) {
     use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+    // nor does it outlive the server, however that ends
+    #[cfg(target_os = "linux")]
+    let _ = rustix::process::set_parent_process_death_signal(Some(rustix::process::Signal::KILL));
     for (resource, most) in [(Resource::As, memory), (Resource::Cpu, seconds), (Resource::Core, Some(0))] {
         if let Some(most) = most {
             let most = getrlimit(resource).maximum.map_or(most, |allowed| most.min(allowed));

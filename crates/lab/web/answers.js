@@ -4,6 +4,7 @@ import { ask, element, formula, refusal } from "/ask.js";
 
 /** The words that stand beside a claim while it is decided. */
 const PENDING = "...";
+const STOPPED = "stopped";
 
 /** The panel of the answers. Verdicts are kept by what they depend on, so that what did not change is not decided again. */
 export class Answers {
@@ -28,6 +29,8 @@ export class Answers {
     clear() {
         this.base = null;
         this.unknowns = null;
+        this.tableOf = null;
+        this.isStopped = false;
         this.results.replaceChildren();
         for (const name of ["claims", "unknowns", "system"]) this.blocks[name].replaceChildren();
         this.blocks.more.hidden = true;
@@ -35,8 +38,8 @@ export class Answers {
 
     /** Takes in what a text says. What is wrong with it leaves the last answers where they are, and says so. */
     async update(draft, signal) {
-        const { lab } = this;
         this.draft = draft;
+        this.isStopped = false;
         if (draft.mathematics != null) this.mathematics(draft);
         this.listed();
         if (!draft.sound) return;
@@ -49,23 +52,35 @@ export class Answers {
             this.unknowns = null;
         }
         this.base = draft.base;
-        this.blocks.unknowns.classList.toggle("old", isNew);
+        this.dimmed();
         const work = [];
-        if (missing.length > 0) work.push(this.decide(missing, signal));
-        if (isNew || !this.unknowns) work.push(this.rank(draft, signal));
+        if (missing.length > 0) work.push(this.decide(draft, missing, signal));
+        if (this.tableOf !== draft.base) work.push(this.rank(draft, signal));
         await Promise.all(work);
-        lab.told();
     }
 
-    async decide(claims, signal) {
+    /** An answer to another text is no answer to this one. */
+    dimmed() {
+        this.blocks.unknowns.classList.toggle("old", !this.draft.sound || this.tableOf !== this.draft.base);
+        this.results.classList.toggle("old", !this.draft.sound);
+    }
+
+    async decide(draft, claims, signal) {
         const keys = new Map(claims.map(claim => [claim.id, claim.key]));
         const take = found => {
             if (found.kind !== "claim") return;
             this.known.set(keys.get(found.claim.id), found.claim);
             this.listed();
         };
-        const question = { ask: "claims", ...this.lab.question(), only: [...keys.keys()] };
-        await this.lab.quietly(`deciding ${keys.size} claims`, signal, signal => ask("answer", question, { signal, line: take }));
+        const question = { ask: "claims", ...draft.question, only: [...keys.keys()] };
+        try {
+            await this.lab.quietly(`deciding ${keys.size} claims`, signal, signal => ask("answer", question, { signal, line: take }));
+        } catch (error) {
+            if (error.name !== "AbortError" || signal.aborted) throw error;
+            // somebody has pressed Stop
+            this.isStopped = true;
+            this.listed();
+        }
         // thousands of texts later the first ones are forgotten
         while (this.known.size > 20000) this.known.delete(this.known.keys().next().value);
     }
@@ -74,14 +89,19 @@ export class Answers {
         const { unknowns } = this.blocks;
         this.blocks.more.hidden = !draft.outputs?.length;
         if (!draft.outputs?.length) {
+            this.tableOf = draft.base;
             unknowns.replaceChildren();
             return;
         }
         try {
-            this.unknowns = await this.lab.quietly("the rank", signal, signal => ask("answer", { ask: "rank", samples: 0, ...this.lab.question() }, { signal }));
+            this.unknowns = await this.lab.quietly("the rank", signal, signal => ask("answer", { ask: "rank", samples: 0, ...draft.question }, { signal }));
+            this.tableOf = draft.base;
             this.table();
         } catch (error) {
-            if (error.name === "AbortError") throw error;
+            if (error.name === "AbortError" && signal.aborted) throw error;
+            this.tableOf = draft.base;
+            this.dimmed();
+            if (error.name === "AbortError") error = new Error("stopped; it is asked again when the text changes");
             unknowns.replaceChildren(element("h2", {}, "Observable and identifiable"), refusal(error));
         }
     }
@@ -94,12 +114,12 @@ export class Answers {
     /** Claims with their verdicts, beside the text and in a list. */
     listed() {
         const { draft } = this;
+        const pending = this.isStopped ? STOPPED : PENDING;
         const found = draft.claims.map(claim => ({ claim, outcome: this.of(claim) }));
         this.lab.text.verdicts(draft.sound ? found.map(({ claim, outcome }) => ({
-            range: claim.range, id: claim.id, word: outcome?.verdict ?? PENDING, ok: outcome?.ok ?? true, told: outcome?.text ?? "being decided",
+            range: claim.range, id: claim.id, word: outcome?.verdict ?? pending, ok: outcome?.ok ?? true, told: outcome?.text ?? "not decided yet",
         })) : []);
-        // an answer to another text is no answer to this one
-        this.blocks.unknowns.classList.toggle("old", !draft.sound || draft.base !== this.base);
+        this.dimmed();
         if (draft.claims.length === 0) {
             this.blocks.claims.replaceChildren();
             return;
@@ -118,14 +138,15 @@ export class Answers {
         const words = Object.entries(counts).map(([word, count]) => `${count} ${word}`).join(", ");
         const left = found.filter(({ outcome }) => !outcome).length;
         const summary = element("p", { id: "claims-summary" }, `${draft.claims.length} ${draft.claims.length === 1 ? "claim" : "claims"}: ${words || "none decided"}`,
-            left ? `; ${left} being decided` : "; ", left ? "" : element("b", { class: unexpected ? "bad" : "good" }, `${unexpected} not as expected`));
+            left ? `; ${left} ${this.isStopped ? "left, since this was stopped " : "being decided"}` : "; ",
+            left && this.isStopped ? element("button", { onclick: () => this.lab.read() }, "Go on") : "", left ? "" : element("b", { class: unexpected ? "bad" : "good" }, `${unexpected} not as expected`));
         const opened = new Set([...this.blocks.claims.querySelectorAll("details[open]")].map(details => details.dataset.id));
-        const items = found.map(({ claim, outcome }) => this.item(claim, outcome, opened.has(claim.id)));
+        const items = found.map(({ claim, outcome }) => this.item(claim, outcome, opened.has(claim.id), pending));
         this.blocks.claims.replaceChildren(element("h2", {}, "Claims"), summary, element("ul", { class: "claims" }, items));
     }
 
-    item(claim, outcome, open) {
-        const word = outcome?.verdict ?? PENDING;
+    item(claim, outcome, open, pending) {
+        const word = outcome?.verdict ?? pending;
         const head = element("summary", {}, element("span", { class: "verdict", "data-w": word, "data-ok": String(outcome?.ok ?? true) }, word), " ", claim.id);
         const body = outcome ? [
             element("div", { class: "formula" }, formula(outcome.mathml, outcome.statement)),
@@ -183,11 +204,13 @@ export class Answers {
         });
         parts.push(element("details", {}, element("summary", {}, "In words"), element("pre", {}, text)));
         this.blocks.unknowns.replaceChildren(...parts);
-        this.blocks.unknowns.classList.remove("old");
+        this.dimmed();
     }
 
     async more(name, question) {
-        const { base } = this;
+        const { base, draft } = this;
+        const button = [...this.blocks.more.querySelectorAll("button")].find(button => button.textContent === name);
+        button.disabled = true;
         const abort = new AbortController();
         this.asked.add(abort);
         const output = element("pre");
@@ -201,7 +224,7 @@ export class Answers {
             }
         };
         try {
-            const answer = await this.lab.run(name, (signal, line) => ask("answer", { ...question, ...this.lab.question() }, { signal, line: found => { line(found); take(found); } }), abort);
+            const answer = await this.lab.run(name, (signal, line) => ask("answer", { ...question, ...draft.question }, { signal, line: found => { line(found); take(found); } }), abort);
             state.remove();
             output.textContent = answer.text;
             if (answer.global && base === this.base) {
@@ -212,6 +235,7 @@ export class Answers {
         } catch (error) {
             state.replaceWith(error.name === "AbortError" ? element("p", { class: "hint" }, "stopped; what was found until then stands here") : refusal(error));
         } finally {
+            button.disabled = false;
             this.asked.delete(abort);
         }
     }

@@ -4,19 +4,54 @@ const KEY = "palmistry-token";
 
 let own = "";
 
-/** Takes the token from the address that was opened, or buys it for the code there; later pages of this browser find it again. */
+/** Begins a session: with the token of the address that was opened, with what its code buys, or with what is kept from an earlier page. */
 export async function enter() {
     const address = new URL(location.href);
     const [code, given] = ["code", "token"].map(key => address.searchParams.get(key));
-    own = given ?? localStorage.getItem(KEY) ?? "";
-    if (code) {
-        address.searchParams.delete("code");
-        own = (await ask("enter", { code }).catch(() => null))?.token ?? own;
-    }
-    address.searchParams.delete("token");
-    // it stays out of the history and of links that are copied
+    for (const key of ["code", "token"]) address.searchParams.delete(key);
+    // they stay out of the history and of links that are copied
     if (code || given) history.replaceState(null, "", address);
-    localStorage.setItem(KEY, own);
+    const bought = code && (await ask("enter", { code }).catch(() => null))?.token;
+    let failure;
+    // an address that a stranger has made up takes nothing away
+    for (const candidate of new Set([bought, given, localStorage.getItem(KEY) ?? ""])) {
+        if (candidate == null) continue;
+        own = candidate;
+        try {
+            const session = await ask("session", {});
+            localStorage.setItem(KEY, own);
+            return session;
+        } catch (error) {
+            failure = error;
+        }
+    }
+    throw failure;
+}
+
+/** What answers at once, and waits for nothing. */
+const CHEAP = new Set(["draft", "hover", "complete", "format", "models", "model"]);
+/** A browser has six ways to a server: dear questions leave some free for those that are asked while one writes. */
+const DEAR_AT_ONCE = 3;
+let dear = 0;
+const waiting = [];
+
+/** A turn for a dear question. */
+async function turn(signal) {
+    while (dear >= DEAR_AT_ONCE) {
+        await new Promise((go, stop) => {
+            const end = () => {
+                waiting.splice(waiting.indexOf(go), 1);
+                stop(signal.reason);
+            };
+            waiting.push(go);
+            signal?.addEventListener("abort", end, { once: true });
+        });
+    }
+    dear += 1;
+    return () => {
+        dear -= 1;
+        waiting.shift()?.();
+    };
 }
 
 /** What the server says where it has no answer. */
@@ -31,7 +66,18 @@ export class NoAnswer extends Error {
  * Asks a question and tells its last line, with the name of a page where there is one; each line before it goes to `line`. Who aborts `signal`
  * ends the work on the server.
  */
-export async function ask(path, question, { signal, line } = {}) {
+export async function ask(path, question, options = {}) {
+    if (path !== "answer" || CHEAP.has(question.ask)) return asked(path, question, options);
+    options.signal?.throwIfAborted();
+    const done = await turn(options.signal);
+    try {
+        return await asked(path, question, options);
+    } finally {
+        done();
+    }
+}
+
+async function asked(path, question, { signal, line }) {
     let response;
     try {
         response = await fetch(`/api/${path}`, {

@@ -40,8 +40,7 @@ const by = id => document.getElementById(id);
 class Lab {
     async begin() {
         this.jobs = new Set();
-        await enter();
-        this.session = await ask("session", {});
+        this.session = await enter();
         by("version").textContent = this.session.version;
         this.text = new Text(by("editor"), {
             words: this.session.words, question: () => this.question(), changed: () => this.changed(), open: id => this.panels.answers.show(id),
@@ -53,8 +52,9 @@ class Lab {
         this.tabs();
         this.buttons();
         by("save").hidden = !this.session.folder;
-        const { text, file } = await this.first();
-        this.put(text, file);
+        const { text, file, was } = await this.first();
+        this.put(text, file, was);
+        if (this.failure) this.notice(this.failure);
         this.text.view.focus();
         document.body.dataset.ready = "true";
     }
@@ -63,9 +63,10 @@ class Lab {
     async first() {
         try {
             const found = await fromLink(location.hash);
+            withoutLink();
             if (found) return found;
         } catch (error) {
-            this.notice(new Error(`the link holds no text that can be read: ${error.message}`));
+            this.failure = new Error(`the link holds no text that can be read: ${error.message}`);
         }
         try {
             const kept = JSON.parse(sessionStorage.getItem(KEPT));
@@ -80,8 +81,8 @@ class Lab {
 
     /** Puts another text here; `file` is where it would stand, and `was` what stands there now. */
     put(text, file = "", was = null) {
-        this.file = file;
-        this.was = was;
+        Object.assign(this, { file, was, lineEnd: /\r\n/.test(text) ? "\r\n" : "\n" });
+        for (const name of ["map", "motion", "observe"]) this.panels[name].forget();
         by("file-name").textContent = file;
         this.panels.answers.clear();
         this.text.set(text);
@@ -92,8 +93,12 @@ class Lab {
     changed(wait = QUIET) {
         try {
             const { text } = this.text;
-            if (text.length <= LONGEST) sessionStorage.setItem(KEPT, JSON.stringify({ text, file: this.file }));
+            if (text.length <= LONGEST) sessionStorage.setItem(KEPT, JSON.stringify({ text: text.replaceAll("\n", this.lineEnd), file: this.file, was: this.was }));
         } catch { /* it is full, or keeps nothing */ }
+        // a link is of the text that it was made of
+        if (wait > 0) withoutLink();
+        // what was asked of another text is no answer to this one
+        this.abort?.abort();
         clearTimeout(this.timer);
         this.timer = setTimeout(() => this.read(), wait);
         document.body.dataset.told = "false";
@@ -103,16 +108,23 @@ class Lab {
     async read() {
         this.abort?.abort();
         const { signal } = this.abort = new AbortController();
+        // all that is asked is asked of this very text, whatever is typed meanwhile
+        const question = this.question();
         try {
-            const draft = await ask("answer", { ask: "draft", ...this.question() }, { signal });
+            const draft = await ask("answer", { ask: "draft", ...question }, { signal });
             if (signal.aborted) return;
+            draft.question = question;
             this.draft = draft;
             this.text.problems(draft.problems);
             const count = draft.problems.length;
             by("state").textContent = count ? `${count} ${count === 1 ? "mistake" : "mistakes"}: line ${draft.problems[0].range.start.line + 1}, ${draft.problems[0].message.split("\n")[0]}` : "no mistakes";
             by("state").className = count ? "bad" : "";
             document.title = draft.title ? `${draft.title}: Palmistry` : "Palmistry: the lab";
-            for (const panel of Object.values(this.panels)) if (panel !== this.panels.answers) panel.update(draft);
+            for (const name of ["map", "motion", "observe"]) {
+                // pictures of a text before its mistakes are none of this one
+                by(name).classList.toggle("old", !draft.sound);
+                this.panels[name].update(draft);
+            }
             await this.panels.answers.update(draft, signal);
             document.body.dataset.told = "true";
         } catch (error) {
@@ -121,9 +133,6 @@ class Lab {
             by("state").className = "bad";
         }
     }
-
-    /** Called when all cheap answers to a text are there. */
-    told() {}
 
     /** Work that nobody asked for by a button: it ends with the text it is about. */
     async quietly(what, outer, work) {
@@ -168,8 +177,8 @@ class Lab {
         else by("progress").value = done;
     }
 
-    notice(error) {
-        by("notice").textContent = error.help ? `${error.message} (${error.help})` : error.message;
+    notice(error, ...buttons) {
+        by("notice").replaceChildren(error.help ? `${error.message} (${error.help}) ` : `${error.message} `, ...buttons);
         by("notice").hidden = false;
     }
 
@@ -208,7 +217,9 @@ class Lab {
         by("export").addEventListener("change", event => { this.exported(event.target.value); event.target.value = ""; });
         addEventListener("hashchange", async () => {
             const found = await fromLink(location.hash).catch(error => this.notice(error));
-            if (found) this.put(found.text, found.file);
+            if (!found) return;
+            withoutLink();
+            this.put(found.text, found.file);
         });
         for (const kind of ["dragover", "drop"]) document.body.addEventListener(kind, event => {
             if (!event.dataTransfer?.types.includes("Files")) return;
@@ -243,27 +254,30 @@ class Lab {
         }
     }
 
-    async save() {
+    async save(elsewhere = false) {
         let { file } = this;
-        if (!file || file.startsWith("papers:")) {
+        if (elsewhere || !file || file.startsWith("papers:")) {
             file = prompt("Save as (a path within the folder, ending with .proof)", file.split("/").pop() || "system.proof");
             if (!file) return;
         }
         try {
-            const { text } = this.text;
+            const text = this.text.text.replaceAll("\n", this.lineEnd);
             await ask("save", { file, text, was: file === this.file ? this.was : null });
             [this.file, this.was] = [file, text];
+            by("notice").hidden = true;
             by("file-name").textContent = file;
             by("state").textContent = `saved: ${file}`;
         } catch (error) {
-            this.notice(error);
+            this.notice(error, element("button", { onclick: () => this.save(true) }, "Save as..."));
         }
     }
 
     async format() {
         try {
+            const { text } = this.text;
             const { edits } = await ask("answer", { ask: "format", ...this.question() });
-            if (edits) this.text.edit(edits);
+            if (text !== this.text.text) by("state").textContent = "the text has changed meanwhile: it is not brought into its normal form";
+            else if (edits) this.text.edit(edits);
             else this.notice(new Error("a text with mistakes has no normal form"));
         } catch (error) {
             this.notice(error);
@@ -275,10 +289,11 @@ class Lab {
             const address = new URL(location.href);
             address.hash = await toLink(this.question());
             history.replaceState(null, "", address);
-            await navigator.clipboard?.writeText(address.href);
-            by("state").textContent = "the link is in the address, and on the clipboard where the browser lets it; whoever runs 'palmistry lab' can open it";
+            // a page without encryption has no clipboard
+            const isCopied = await navigator.clipboard?.writeText(address.href).then(() => true, () => false);
+            by("state").textContent = `the link is ${isCopied ? "on the clipboard and " : ""}in the address of this page; whoever runs 'palmistry lab' can open it`;
         } catch (error) {
-            by("state").textContent = "the link is in the address of this page";
+            this.notice(error);
         }
     }
 
@@ -306,7 +321,7 @@ function download(name, type, text) {
 /** A notebook with the text and the questions of this page. */
 function notebook(text, title) {
     const cell = (kind, source) => ({
-        cell_type: kind, id: crypto.randomUUID().slice(0, 8), metadata: {}, source: source.split(/(?<=\n)/), ...(kind === "code" ? { execution_count: null, outputs: [] } : {}),
+        cell_type: kind, id: [...crypto.getRandomValues(new Uint8Array(4))].map(byte => byte.toString(16).padStart(2, "0")).join(""), metadata: {}, source: source.split(/(?<=\n)/), ...(kind === "code" ? { execution_count: null, outputs: [] } : {}),
     });
     // a string of JSON is one of Python
     const cells = [
@@ -337,6 +352,11 @@ async function toLink(question) {
     let letters = "";
     for (const byte of bytes) letters += String.fromCharCode(byte);
     return `text=${btoa(letters).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "")}`;
+}
+
+/** Takes the link out of the address: it stays not behind a text that is another one. */
+function withoutLink() {
+    if (location.hash) history.replaceState(null, "", location.pathname + location.search);
 }
 
 async function fromLink(hash) {

@@ -2,6 +2,7 @@
 
 import { ask, element, refusal, shown } from "/ask.js";
 import { COLORS, chart } from "/chart.js";
+import { Values } from "/values.js";
 
 const CELLS = 96;
 /** A pointer that has not moved for so long rests, in ms. */
@@ -20,7 +21,7 @@ const MOST = 3;
 
 export class Map_ {
     constructor(panel, lab) {
-        Object.assign(this, { lab, panel, values: new Map() });
+        Object.assign(this, { lab, panel, values: new Values(), view: new Map() });
         this.settings = element("div", { class: "row" });
         this.sliders = element("div", { class: "sliders", role: "group", "aria-label": "Values of what is fixed" });
         this.canvas = element("canvas", { width: CELLS, height: CELLS, tabindex: 0, role: "img", "aria-label": "Map; arrow keys move the pointer" });
@@ -43,6 +44,13 @@ export class Map_ {
         this.canvas.addEventListener("keydown", event => this.key(event));
     }
 
+    /** Another file is another system: nothing that was chosen is of it. */
+    forget() {
+        this.values.clear();
+        this.x = this.y = this.of = null;
+        this.key_ = null;
+    }
+
     /** Takes in the symbols of a text; what is chosen stays, where it is still there. */
     update(draft) {
         this.draft = draft;
@@ -51,6 +59,12 @@ export class Map_ {
         if (key === this.key_) return;
         this.key_ = key;
         this.isNew = true;
+        // what was drawn of another system is no picture of this one
+        this.abort?.abort();
+        this.deciding?.abort();
+        this.grid = this.names = null;
+        this.canvas.getContext("2d").clearRect(0, 0, this.canvas.width, this.canvas.height);
+        this.read.textContent = "";
         const names = draft.symbols.map(symbol => symbol.name);
         const unknown = draft.symbols.filter(symbol => symbol.unknown).map(symbol => symbol.name);
         const states = draft.symbols.filter(symbol => symbol.kind === "state").map(symbol => symbol.name);
@@ -83,7 +97,7 @@ export class Map_ {
             element("label", {}, "to the right", this.x), ...ends("x"), element("label", {}, "upwards", this.y), ...ends("y"), element("label", {}, "of", this.of));
         this.put();
         for (const select of [this.x, this.y]) select.addEventListener("change", () => { this.put(); this.fixed(); }, { capture: true });
-        for (const [name, value] of Object.entries(first?.at ?? {})) if (!this.values.has(name)) this.values.set(name, value);
+        this.view = new Map(Object.entries(first?.at ?? {}));
         this.fixed();
         this.lines(names);
         if (!this.panel.hidden) this.drawn();
@@ -94,13 +108,12 @@ export class Map_ {
         const rest = this.draft.symbols.filter(symbol => ![this.x.value, this.y.value].includes(symbol.name));
         this.sliders.replaceChildren(...rest.map(symbol => {
             const { name, low, high } = symbol;
-            const value = this.values.get(name) ?? symbol.value ?? (low + high) / 2;
-            this.values.set(name, value);
+            const value = this.valueOf(symbol);
             const told = element("output", {}, shown(value));
             const slider = element("input", {
                 type: "range", min: Math.min(low, value), max: Math.max(high, value), step: (high - low) / 200 || "any", value, "aria-label": name,
                 oninput: event => {
-                    this.values.set(name, Number(event.target.value));
+                    this.values.set(symbol, Number(event.target.value));
                     told.textContent = shown(Number(event.target.value));
                     this.drawn();
                 },
@@ -109,12 +122,14 @@ export class Map_ {
         }));
     }
 
+    /** What was chosen, else what the file's own map holds fixed, else the value of the text or the middle of its range. */
+    valueOf(symbol) {
+        return this.values.has(symbol) ? this.values.get(symbol) : this.view.get(symbol.name) ?? this.values.get(symbol);
+    }
+
     at() {
-        const found = {};
-        for (const symbol of this.draft.symbols) {
-            if (this.values.has(symbol.name) && ![this.x.value, this.y.value].includes(symbol.name)) found[symbol.name] = this.values.get(symbol.name);
-        }
-        return found;
+        const rest = this.draft.symbols.filter(symbol => ![this.x.value, this.y.value].includes(symbol.name));
+        return Object.fromEntries(rest.map(symbol => [symbol.name, this.valueOf(symbol)]));
     }
 
     axis(axis) {
@@ -136,7 +151,7 @@ export class Map_ {
         const [x, y] = [this.axis("x"), this.axis("y")];
         this.failure.replaceChildren();
         if (x[0] === y[0]) return this.failure.replaceChildren(element("p", { class: "hint" }, "Choose two different coordinates."));
-        const question = { ask: "map", ...this.lab.question(), x, y, at: this.at(), of: this.of.value || null, cells: CELLS };
+        const question = { ask: "map", ...this.draft.question, x, y, at: this.at(), of: this.of.value || null, cells: CELLS };
         const ends = axis => [element("span", {}, shown(axis[1])), element("span", {}, axis[0]), element("span", {}, shown(axis[2]))];
         this.across.replaceChildren(...ends(x));
         this.up.replaceChildren(...ends(y));
@@ -214,13 +229,15 @@ export class Map_ {
         this.told();
         const before = this.read.textContent;
         const { place } = this;
+        this.deciding?.abort();
+        const { signal } = this.deciding = new AbortController();
         try {
-            const found = await ask("answer", { ask: "state", ...this.lab.question(), at: this.state() });
+            const found = await ask("answer", { ask: "state", ...this.draft.question, at: this.state() }, { signal });
             if (place !== this.place) return;
             const how = found.certified ? "certified" : "computed";
             this.read.textContent = `${before}; ${found.rank == null ? "there is no rank: a pole, or not decided" : `rank ${found.rank} of ${found.dimension} (${how})`}`;
         } catch (error) {
-            if (place === this.place) this.read.textContent = `${before}; ${error.message}`;
+            if (error.name !== "AbortError" && place === this.place) this.read.textContent = `${before}; ${error.message}`;
         }
     }
 
@@ -242,7 +259,7 @@ export class Map_ {
         }
         delete at[moving];
         try {
-            const found = await this.lab.run("the line", signal => ask("answer", { ask: "line", ...this.lab.question(), moving, zero: zero || null, at }, { signal }));
+            const found = await this.lab.run("the line", signal => ask("answer", { ask: "line", ...this.draft.question, moving, zero: zero || null, at }, { signal }));
             const curves = found.names.map((name, place) => ({
                 name, color: COLORS[place % COLORS.length], x: found.distance, y: found.values.map(all => (all && all[place] > 0 ? all[place] : NaN)), dash: place >= COLORS.length ? "5 3" : null,
             }));

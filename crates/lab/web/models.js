@@ -15,8 +15,6 @@ export class Models {
         panel.append(this.scene, this.folder, this.list);
     }
 
-    update() {}
-
     async shown() {
         if (this.lab.session.folder) await this.files();
         if (this.isRead) return;
@@ -52,8 +50,8 @@ export class Models {
         this.scene.replaceChildren(element("h2", {}, scene.title ?? scene.file), element("p", { class: "hint", role: "status" }, "being observed ..."));
         this.scene.scrollIntoView();
         try {
-            const { page, motion, observed } = await this.lab.run(scene.title ?? scene.file, signal => ask("answer", { ask: "scene", scene: scene.file }, { signal }));
-            this.scene.replaceChildren(element("h2", {}, scene.title ?? scene.file), motion ? movingScene(motion, observed.shape) ?? "" : "", element("iframe", { src: `/page/${page}`, title: scene.title ?? scene.file, sandbox: "allow-scripts" }));
+            const { page, motion, observed, scene: text } = await this.lab.run(scene.title ?? scene.file, signal => ask("answer", { ask: "scene", scene: scene.file }, { signal }));
+            this.scene.replaceChildren(element("h2", {}, scene.title ?? scene.file), motion ? movingScene(motion, observed.shape, text) ?? "" : "", element("iframe", { src: `/page/${page}`, title: scene.title ?? scene.file, sandbox: "allow-scripts" }));
         } catch (error) {
             this.scene.replaceChildren(error.name === "AbortError" ? element("p", {}, "stopped") : refusal(error));
         }

@@ -2,13 +2,14 @@
 
 import { ask, element, refusal, shown } from "/ask.js";
 import { COLORS, chart } from "/chart.js";
+import { Values } from "/values.js";
 
 /** A waiting time after the last change, so that a slider that is being moved asks not for every step. */
 const QUIET = 60;
 
 export class Motion {
     constructor(panel, lab) {
-        Object.assign(this, { lab, panel, values: new Map(), functions: new Map() });
+        Object.assign(this, { lab, panel, values: new Values(), functions: new Map() });
         this.duration = element("input", { type: "number", value: 10, min: 0, step: "any", "aria-label": "Duration", onchange: () => this.later() });
         this.sliders = element("div", { class: "sliders", role: "group", "aria-label": "Start and parameters" });
         this.inputs = element("div", { class: "row", role: "group", "aria-label": "Inputs" });
@@ -21,11 +22,21 @@ export class Motion {
             element("div", { class: "row" }, element("label", {}, "duration", this.duration)), this.inputs, this.sliders, this.second, this.axes, this.told, this.pictures);
     }
 
+    /** Another file is another system: nothing that was chosen is of it. */
+    forget() {
+        this.values.clear();
+        this.functions.clear();
+        this.x = this.y = this.base = null;
+    }
+
     update(draft) {
         this.draft = draft;
         if (!draft.sound || !draft.symbols || draft.base === this.base) return;
         this.base = draft.base;
         this.isNew = true;
+        // what moves is another system
+        this.abort?.abort();
+        this.told.textContent = "";
         this.sliders.replaceChildren(...draft.symbols.filter(symbol => !symbol.signal).map(symbol => this.slider(symbol)));
         this.drives = draft.fields?.filter(field => field.role === "input").map(field => field.name) ?? [];
         this.drives.push(...(draft.signals ?? []));
@@ -52,13 +63,12 @@ export class Motion {
 
     slider(symbol) {
         const { name, low, high } = symbol;
-        const value = this.values.get(name) ?? symbol.value ?? low + (high - low) * 0.7;
-        this.values.set(name, value);
+        const value = this.valueOf(symbol);
         const told = element("output", {}, shown(value));
         const slider = element("input", {
             type: "range", min: Math.min(low, value), max: Math.max(high, value), step: (high - low) / 200 || "any", value, "aria-label": symbol.kind === "state" ? `${name} at the start` : name, "data-name": name,
             oninput: event => {
-                this.values.set(name, Number(event.target.value));
+                this.values.set(symbol, Number(event.target.value));
                 told.textContent = shown(Number(event.target.value));
                 this.later();
             },
@@ -66,8 +76,13 @@ export class Motion {
         return element("label", {}, name, slider, told);
     }
 
+    /** A motion begins off the middle, where many systems rest. */
+    valueOf(symbol) {
+        return this.values.get(symbol, 0.7);
+    }
+
     start() {
-        return Object.fromEntries(this.draft.symbols.filter(symbol => !symbol.signal).map(symbol => [symbol.name, this.values.get(symbol.name)]));
+        return Object.fromEntries(this.draft.symbols.filter(symbol => !symbol.signal).map(symbol => [symbol.name, this.valueOf(symbol)]));
     }
 
     driven() {
@@ -88,7 +103,7 @@ export class Motion {
         this.isNew = false;
         this.abort?.abort();
         const abort = this.abort = new AbortController();
-        const question = { ask: "motion", ...this.lab.question(), start: this.start(), inputs: this.driven(), duration: Number(this.duration.value), samples: 400, along: this.along };
+        const question = { ask: "motion", ...this.draft.question, start: this.start(), inputs: this.driven(), duration: Number(this.duration.value), samples: 400, along: this.along };
         try {
             this.found = await this.lab.quietly("the motion", abort.signal, signal => ask("answer", question, { signal }));
             this.offer();
@@ -130,7 +145,7 @@ export class Motion {
         const starts = portrait.filter(curve => curve.x.length > 0).map(curve => ({ x: curve.x[0], y: curve.y[0], color: curve.color }));
         const put = (x, y) => {
             for (const [select, value] of [[this.x, x], [this.y, y]]) {
-                this.values.set(select.value, value);
+                this.values.set(this.draft.symbols.find(symbol => symbol.name === select.value), value);
                 const slider = this.sliders.querySelector(`input[data-name="${CSS.escape(select.value)}"]`);
                 if (slider) {
                     slider.min = Math.min(slider.min, value);
@@ -148,7 +163,8 @@ export class Motion {
         const parts = [];
         if (found.ended) parts.push(`The motion ends early: ${found.ended}.`);
         if (found.second) {
-            const start = Object.entries(found.second.start).filter(([name, value]) => Math.abs(value - this.values.get(name)) > 1e-12);
+            const first = this.start();
+            const start = Object.entries(found.second.start).filter(([name, value]) => Math.abs(value - first[name]) > 1e-12);
             parts.push(`Second start: ${start.map(([name, value]) => `${name} = ${shown(value)}`).join(", ")}. The outputs of both differ by ${found.second.difference.toExponential(1)} of their size.`);
         }
         this.told.textContent = parts.join(" ");

@@ -34,7 +34,7 @@ export class Observe {
             number("duration", 10, { min: 1, max: 100, step: 1 }, "duration"), number("samples", 200, { min: 10, max: 2000, step: 10 }, "samples"));
         this.windows = element("div", { class: "sliders" }, number("window", 100, { min: 5, max: 100, step: 5 }, "window, %"), number("seed", 1, { min: 1, max: 50, step: 1 }, "seed"));
         this.method = element("select", { "aria-label": "Method", onchange: () => this.later() },
-            [["", "the default"], ["multiple-shooting", "multiple shooting"], ["trust-region", "trust region"], ["whole", "all of the record"], ["unscented", "unscented Kalman filter"], ["kalman", "extended Kalman filter"], ["smoother", "smoother"], ["integration", "the first guess, carried along"]].map(([value, name]) => element("option", { value }, name)));
+            [["", "the default"], ["multiple-shooting", "multiple shooting"], ["trust-region", "trust region"], ["unscented", "unscented Kalman filter"], ["kalman", "extended Kalman filter"], ["smoother", "smoother"], ["integration", "the first guess, carried along"]].map(([value, name]) => element("option", { value }, name)));
         this.mapped = element("div", { class: "row" });
         this.unknowns = element("fieldset", {}, element("legend", {}, "to be estimated"));
         this.result = element("div");
@@ -56,6 +56,12 @@ export class Observe {
         });
     }
 
+    /** Another file is another system. */
+    forget() {
+        this.base = null;
+        this.columns.clear();
+    }
+
     value(name) {
         const { slider, log } = this.sliders_[name];
         return log ? 10 ** Number(slider.value) : Number(slider.value);
@@ -66,6 +72,7 @@ export class Observe {
         if (!draft.sound || !draft.symbols || draft.base === this.base) return;
         this.base = draft.base;
         this.isNew = true;
+        this.abort?.abort();
         const outputs = new Set(draft.outputs ?? []);
         const box = symbol => {
             const isChosen = symbol.unknown && !outputs.has(symbol.name);
@@ -81,6 +88,7 @@ export class Observe {
         this.result.replaceChildren();
         this.trade = [];
         this.map();
+        this.later();
     }
 
     shown() {
@@ -114,12 +122,15 @@ export class Observe {
         this.source.replaceChildren(element("span", {}, `${this.name}: ${rows} rows; columns ${heads.join(", ")}`));
         const wanted = ["time", ...(this.draft?.outputs ?? []), ...(this.draft?.signals ?? []), ...(this.draft?.fields ?? []).filter(field => field.role === "input").map(field => field.name)];
         const near = name => heads.find(head => head === name) ?? heads.find(head => head.toLowerCase() === name.toLowerCase()) ?? (name === "time" ? heads.find(head => /^t(ime)?\b/i.test(head)) ?? heads[0] : "");
+        const before = this.columns;
+        this.columns = new Map();
         for (const name of new Set(wanted)) {
-            const column = { from: near(name) ?? "", unit: "" };
+            // what was chosen stays, where the model still has it
+            const column = heads.includes(before.get(name)?.from) ? before.get(name) : { from: near(name) ?? "", unit: "" };
             this.columns.set(name, column);
             const select = element("select", { "aria-label": `The column of ${name}`, onchange: event => { column.from = event.target.value; this.later(); } }, ["", ...heads].map(head => element("option", { value: head }, head || "(none)")));
             select.value = column.from;
-            const unit = element("input", { size: 4, placeholder: "unit", "aria-label": `The unit of the column of ${name}, if it is another`, onchange: event => { column.unit = event.target.value.trim(); this.later(); } });
+            const unit = element("input", { size: 4, placeholder: "unit", value: column.unit, "aria-label": `The unit of the column of ${name}, if it is another`, onchange: event => { column.unit = event.target.value.trim(); this.later(); } });
             this.mapped.append(element("label", {}, name, select, unit));
         }
     }
@@ -127,11 +138,11 @@ export class Observe {
     later() {
         if (!this.live.checked || this.panel.hidden) return;
         clearTimeout(this.timer);
-        this.timer = setTimeout(() => this.estimate(), QUIET);
+        this.timer = setTimeout(() => (this.panel.hidden ? (this.isNew = true) : this.estimate()), QUIET);
     }
 
     question() {
-        const base = { ask: "observe", ...this.lab.question(), estimate: [...this.chosen], method: this.method.value || null, seed: this.value("seed") };
+        const base = { ask: "observe", ...this.draft.question, estimate: [...this.chosen], method: this.method.value || null, seed: this.value("seed") };
         const { motion } = this.lab.panels;
         if (this.csv == null) {
             const samples = this.value("samples");
@@ -159,10 +170,11 @@ export class Observe {
         this.isNew = false;
         this.abort?.abort();
         const abort = this.abort = new AbortController();
+        const { base } = this.draft;
         const begin = performance.now();
         try {
             const found = await this.lab.run("the estimate", signal => ask("answer", this.question(), { signal }), abort);
-            await this.told(found, performance.now() - begin);
+            if (base === this.draft.base) this.told(found, performance.now() - begin);
         } catch (error) {
             if (error.name !== "AbortError") this.result.replaceChildren(refusal(error));
         }
@@ -184,13 +196,13 @@ export class Observe {
             element("figcaption", {}, `Speed against accuracy: the last ${this.trade.length} estimates, in their order.`));
     }
 
-    async told({ observed, page, scene }, took) {
+    told({ observed, page, scene }, took) {
         const parts = [];
         for (const observer of observed.observers ?? []) {
             const { end } = observer;
             const heads = ["", "estimate", "\u00b1 (Cram\u00e9r-Rao)", "true", "error"];
             const rows = Object.entries(end?.states ?? {}).map(([name, state]) => element("tr", {},
-                element("td", {}, name), element("td", {}, shown(state.recovered ?? NaN, 6)), element("td", {}, state.bound == null ? "not observable" : shown(state.bound, 2)),
+                element("td", {}, name), element("td", {}, shown(state.recovered ?? NaN, 6)), element("td", {}, state.bound == null ? "no bound" : shown(state.bound, 2)),
                 element("td", {}, state.true == null ? "" : shown(state.true, 6)), element("td", {}, state.error == null ? "" : shown(state.error, 2))));
             parts.push(element("h2", {}, observer.method ?? observer.name ?? "estimate"));
             if (rows.length) parts.push(element("div", { class: "wide" }, element("table", { class: "estimates" }, element("thead", {}, element("tr", {}, heads.map(head => element("th", {}, head)))), element("tbody", {}, rows))));

@@ -1,7 +1,7 @@
 // The text: its colours, its mistakes, what can stand at the cursor, what a name is, and the verdicts beside the claims.
 
 import {
-    Decoration, EditorState, EditorView, HighlightStyle, StateEffect, StateField, StreamLanguage, Transaction, WidgetType, acceptCompletion, autocompletion,
+    Decoration, EditorState, EditorView, HighlightStyle, StateEffect, StateField, StreamLanguage, WidgetType, acceptCompletion, autocompletion,
     bracketMatching, closeBrackets, defaultKeymap, drawSelection, highlightActiveLine, highlightSelectionMatches, highlightSpecialChars, history,
     historyKeymap, hoverTooltip, keymap, lineNumbers, lintGutter, lintKeymap, search, searchKeymap, setDiagnostics, syntaxHighlighting, tags,
 } from "/editor.js";
@@ -85,39 +85,36 @@ const verdicts = StateField.define({
     provide: field => EditorView.decorations.from(field),
 });
 
-const fromServer = Transaction.userEvent.of("palmistry.set");
-
 /** The editor; `changed` is called when somebody has changed the text. */
 export class Text {
     constructor(parent, { words, question, changed, open }) {
         this.question = question;
         this.open = open;
         const nonce = document.querySelector("meta[name=nonce]").content;
-        this.view = new EditorView({
-            parent,
-            state: EditorState.create({
-                extensions: [
-                    EditorView.cspNonce.of(nonce), lineNumbers(), lintGutter(), highlightSpecialChars(), history(), drawSelection(), highlightActiveLine(),
-                    bracketMatching(), closeBrackets(), highlightSelectionMatches(), search({ top: true }), EditorState.tabSize.of(4),
-                    language(words), syntaxHighlighting(colours), looks, verdicts,
-                    autocompletion({ override: [context => this.complete(context)], activateOnTypingDelay: 60 }),
-                    hoverTooltip((view, at) => this.hover(at), { hoverTime: 250 }),
-                    keymap.of([{ key: "Tab", run: acceptCompletion }, ...defaultKeymap, ...searchKeymap, ...historyKeymap, ...lintKeymap]),
-                    EditorView.contentAttributes.of({ "aria-label": "The text of the system" }),
-                    EditorView.updateListener.of(update => update.docChanged && changed()),
-                ],
-            }),
-        });
+        this.extensions = [
+            EditorView.cspNonce.of(nonce), lineNumbers(), lintGutter(), highlightSpecialChars(), history(), drawSelection(), highlightActiveLine(),
+            bracketMatching(), closeBrackets(), highlightSelectionMatches(), search({ top: true }), EditorState.tabSize.of(4),
+            language(words), syntaxHighlighting(colours), looks, verdicts,
+            autocompletion({ override: [context => this.complete(context)], activateOnTypingDelay: 60 }),
+            hoverTooltip((view, at) => this.hover(at), { hoverTime: 250 }),
+            keymap.of([{ key: "Tab", run: acceptCompletion }, ...defaultKeymap, ...searchKeymap, ...historyKeymap, ...lintKeymap]),
+            EditorView.contentAttributes.of({ "aria-label": "The text of the system" }),
+            EditorView.updateListener.of(update => update.docChanged && changed()),
+        ];
+        this.view = new EditorView({ parent, state: this.fresh("") });
+    }
+
+    fresh(doc) {
+        return EditorState.create({ doc, extensions: this.extensions });
     }
 
     get text() {
         return this.view.state.doc.toString();
     }
 
-    /** Puts another text in the place of this one. */
+    /** Puts another text in the place of this one. It has a history of its own: what is undone leads not back into another file. */
     set(text) {
-        const { state } = this.view;
-        this.view.dispatch({ changes: { from: 0, to: state.doc.length, insert: text }, selection: { anchor: 0 }, annotations: fromServer, scrollIntoView: true });
+        this.view.setState(this.fresh(text));
     }
 
     /** The place of a position of the language server. */
@@ -141,7 +138,8 @@ export class Text {
         context.addEventListener("abort", () => abort.abort());
         const found = await ask("answer", { ask: "complete", ...this.question(), position: this.position(context.pos) }, { signal: abort.signal }).catch(() => null);
         if (!found) return null;
-        const options = found.items.map(item => ({ label: item.label, detail: item.detail, type: kinds[item.kind] }));
+        // what stands there already is not to be accepted once more
+        const options = found.items.filter(item => item.label !== word?.text).map(item => ({ label: item.label, detail: item.detail, type: kinds[item.kind] }));
         return { from: word ? word.from : context.pos, options, validFor: /^[A-Za-z0-9_]*$/ };
     }
 

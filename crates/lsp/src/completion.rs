@@ -40,6 +40,9 @@ pub(super) fn completions(library: &Library, source: &Rc<Source>, at: usize) -> 
         return items(found);
     }
     let line = text[..begin].rsplit('\n').next().unwrap_or_default();
+    if declares_a_name(line) {
+        return Vec::new();
+    }
     let mut offer = |words: &mut dyn Iterator<Item = &'static str>, kind: u32, detail: &str| {
         for word in words {
             found.entry(word.to_owned()).or_insert((kind, detail.to_owned()));
@@ -58,6 +61,21 @@ pub(super) fn completions(library: &Library, source: &Rc<Source>, at: usize) -> 
         add(&mut found, &one.name, one);
     }
     items(found)
+}
+
+/// Whether the name of something new is being written: there is nothing to offer, and who ends the line means to end it.
+fn declares_a_name(line: &str) -> bool {
+    let first = line.split_whitespace().next().unwrap_or_default();
+    let rest = line.trim_start().strip_prefix(first).unwrap_or_default();
+    match first {
+        "state" | "param" | "known" | "unknown" => {
+            !rest.rsplit(',').next().unwrap_or_default().contains([':', '=', '('])
+        }
+        "let" | "use" => !rest.contains('='),
+        "claim" => !rest.contains(':'),
+        "drift" | "input" | "field" | "system" => true,
+        _ => false,
+    }
 }
 
 /// Whether a line declares names, whose units stand behind a colon.

@@ -323,6 +323,52 @@ fn hostile_requests_get_nothing_and_leave_nothing() {
     assert_eq!(still["kind"], "done");
 }
 
+/// A page comes from the program alone: what a stranger calls one is none.
+#[test]
+fn nobody_puts_a_page_there() {
+    let lab = Lab::begin(&["--public", "127.0.0.1:0"]);
+    let page = "<h1>phish</h1><script>alert(1)</script>";
+    for name in ["page.html", "../page.html", "the-page-of-this-answer.html"] {
+        for question in [
+            json!({ "ask": "import", "files": { name: page } }),
+            json!({ "ask": "page", "file": name, "text": page }),
+        ] {
+            let lines = lab.ask("answer", &question);
+            assert!(lines.iter().all(|line| line["kind"] == "error"), "{lines:?}");
+        }
+    }
+}
+
+/// One client that asks and asks waits for itself: further questions are refused, and those of others are answered.
+#[test]
+fn one_client_does_not_shut_out_the_others() {
+    let lab = Lab::begin(&["--public", "127.0.0.1:0"]);
+    let long = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/proofs/benchmarks/pharm.proof"))
+        .unwrap();
+    let question = lab.request("answer", &json!({ "ask": "values", "text": long }).to_string());
+    let send = |_| {
+        let mut stream = std::net::TcpStream::connect(&lab.host).expect("it listens");
+        std::io::Write::write_all(&mut stream, &question).expect("it reads");
+        stream
+    };
+    let waiting: Vec<_> = (0..160).map(send).collect();
+    let begin = std::time::Instant::now();
+    let refused = || lab.raw(&lab.request("answer", "{\"ask\": \"models\"}")).map(|reply| reply.status);
+    while refused() != Some(429) {
+        assert!(begin.elapsed().as_secs() < 20, "{:?}", refused());
+    }
+    // the page itself is there all the same, and when they have gone there is room again
+    assert_eq!(
+        lab.raw(format!("GET / HTTP/1.1\r\nhost: {}\r\nconnection: close\r\n\r\n", lab.host).as_bytes())
+            .map(|reply| reply.status),
+        Some(200)
+    );
+    drop(waiting);
+    while refused() == Some(429) {
+        assert!(begin.elapsed().as_secs() < 60);
+    }
+}
+
 /// What everybody reaches reads and writes no file, answers its own page alone, and needs no token.
 #[test]
 fn a_public_lab_has_no_files() {

@@ -100,7 +100,7 @@ fn a_robot_whose_second_beacon_appears() {
         browser.value(&pixel).as_f64().expect("a number")
     };
     let (far, near) = (light(&mut browser, 0.1), light(&mut browser, 0.5));
-    assert!(far > near + 100.0, "{far} {near}");
+    assert!(far > near + 50.0, "{far} {near}");
     browser.value("document.querySelector('#map canvas').focus()");
     browser.key("ArrowUp", 38, 0);
     browser.until("/x = .*y = .*standard deviation/.test(document.querySelector('#map .read').textContent)");
@@ -179,18 +179,25 @@ fn a_model_is_imported_stopped_and_linked() {
     }
 }
 
-/// A body between its palms moves, and its outline is there.
+/// A body between its palms, flat ones and circular ones, moves, and its outline is there.
 #[test]
 fn a_body_moves_between_its_palms() {
     let Some(mut browser) = Browser::begin() else { return };
     let lab = Lab::open();
     browser.go(&lab.url);
     browser.click("#tab-models");
+    let circular = model("moll2002/scenes/circular_palms.toml");
+    browser.until(&format!("document.querySelector('{circular}')"));
+    browser.click(&circular);
+    browser.until("document.querySelector('#scene iframe')");
+    assert_eq!(browser.value("document.querySelectorAll('#scene svg .palm').length"), 2);
+    std::thread::sleep(std::time::Duration::from_secs(5));
+    browser.picture("circular_palms");
     let scene = model("moll2002/scenes/general.toml");
-    browser.until(&format!("document.querySelector('{scene}')"));
+    browser.value("document.querySelector('#scene iframe').remove()");
     browser.click(&scene);
     browser.until("document.querySelector('#scene iframe')");
-    let trail = "document.querySelectorAll('#scene polyline')[0].getAttribute('points').length";
+    let trail = "document.querySelector('#scene .trail').getAttribute('points').length";
     browser.value("(() => { const time = document.querySelector('#scene input[type=range]'); time.value = 20; time.dispatchEvent(new Event('input')); })()");
     let early = browser.value(trail).as_u64();
     browser.value("(() => { const time = document.querySelector('#scene input[type=range]'); time.value = time.max; time.dispatchEvent(new Event('input')); })()");
@@ -344,4 +351,116 @@ fn a_strangers_text_is_no_markup() {
     // even where it would be markup, the page runs nothing but its own
     let refused = browser.value("(() => { const script = document.createElement('script'); script.textContent = 'window.hacked = 1'; document.body.append(script); return window.hacked === undefined; })()");
     assert_eq!(refused, true);
+}
+
+/// A file has a history of its own, an edit survives a reload after a link was copied, a file of the folder can be saved after a reload, and who
+/// was there first is not written over.
+#[test]
+fn nothing_is_lost_between_files_and_reloads() {
+    let Some(mut browser) = Browser::begin() else { return };
+    let folder = folder();
+    let [one, other] = ["one", "other"].map(|name| format!("system \"{name}\"\r\nstate x\r\n"));
+    for (name, text) in [("one.proof", &one), ("other.proof", &other)] {
+        write(&folder, name, text);
+    }
+    let lab = Lab::begin(&["--port", "0", folder.path().to_str().unwrap()]);
+    browser.go(&lab.url);
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect("it is there");
+    let open = |browser: &mut Browser, name: &str| {
+        browser.click("#tab-models");
+        browser.until(&format!("document.querySelector('[data-file=\"{name}\"]')"));
+        browser.click(&format!("[data-file=\"{name}\"]"));
+        browser.until(&format!("document.getElementById('file-name').textContent === '{name}' && {TOLD}"));
+    };
+    open(&mut browser, "one.proof");
+    open(&mut browser, "other.proof");
+    browser.value("document.querySelector('.cm-content').focus()");
+    browser.key("z", 90, 2);
+    browser.click("#save");
+    browser.until("document.getElementById('state').textContent.startsWith('saved')");
+    assert_eq!((read("one.proof"), read("other.proof")), (one.clone(), other.clone()));
+    browser.click("#link");
+    browser.until("location.hash.startsWith('#text=')");
+    browser.write("system \"mine\"\nstate y\n");
+    assert_eq!(browser.text("location.hash"), "");
+    browser.until(TOLD);
+    browser.send("Page.reload", serde_json::json!({}));
+    browser.until(&format!("document.querySelector('.cm-content')?.innerText.includes('mine') && {TOLD}"));
+    browser.value(
+        "window.asked = []; window.prompt = told => { window.asked.push(told); return 'third.proof'; }",
+    );
+    browser.click("#save");
+    browser.until("document.getElementById('state').textContent === 'saved: other.proof'");
+    assert_eq!(read("other.proof"), "system \"mine\"\r\nstate y\r\n");
+    // somebody else writes meanwhile
+    write(&folder, "other.proof", &other);
+    browser.click("#save");
+    browser
+        .until("document.getElementById('notice').textContent.includes('was changed since it was opened')");
+    browser.click("#notice button");
+    browser.until("document.getElementById('state').textContent === 'saved: third.proof'");
+    assert_eq!(
+        (read("other.proof"), read("third.proof")),
+        (other, "system \"mine\"\r\nstate y\r\n".to_owned())
+    );
+}
+
+/// Answers are to the text that stands there: values that are edited reach every panel, what is of another system goes, a claim that was stopped
+/// says so, and Enter ends a line.
+#[test]
+fn answers_are_to_the_text_that_stands_there() {
+    let Some(mut browser) = Browser::begin() else { return };
+    let lab = Lab::open();
+    browser.go(&lab.url);
+    for tab in ["map", "motion", "observe", "answers"] {
+        browser.click(&format!("#tab-{tab}"));
+    }
+    browser.write(&PENDULUM.replace("k = 2", "k = 5"));
+    browser.until(TOLD);
+    let slider = |browser: &mut Browser, panel: &str| {
+        browser.text(&format!("document.querySelector('#{panel} input[type=range][aria-label=k]').value"))
+    };
+    assert_eq!([slider(&mut browser, "map"), slider(&mut browser, "motion")], ["5", "5"]);
+    // one that somebody has moved stays, until the text says something else
+    browser.value("(() => { const slider = document.querySelector('#motion input[type=range][aria-label=k]'); slider.value = 6; slider.dispatchEvent(new Event('input')); })()");
+    browser.write(&PENDULUM.replace("k = 2", "k = 5").replace("output phi", "output phi, omega"));
+    browser.until(TOLD);
+    assert_eq!([slider(&mut browser, "map"), slider(&mut browser, "motion")], ["5", "6"]);
+    browser.write(&PENDULUM.replace("k = 2", "k = 7"));
+    browser.until(TOLD);
+    assert_eq!(slider(&mut browser, "motion"), "7");
+    // estimates of the pendulum are none of another system
+    browser.click("#tab-observe");
+    browser.until("document.querySelector('#observe table.estimates')?.innerText.includes('omega')");
+    browser.write("system \"Other\"\nstate z\ndrift f z' = -z\noutput z\n");
+    browser.until(TOLD);
+    assert_eq!(browser.value("document.querySelector('#observe').innerText.includes('omega')"), false);
+    browser.click("#tab-answers");
+    // answers that come late come from a server that is slow
+    browser.value("window.own = window.fetch; window.slow = () => true; window.fetch = async (path, init) => { const found = await window.own(path, init); if (window.slow(JSON.parse(init.body).ask)) await new Promise(go => setTimeout(go, 1500)); init.signal?.throwIfAborted(); return found; }");
+    browser.value("window.slow = ask => ask === 'claims'");
+    browser.write(PENDULUM);
+    browser.until("!document.getElementById('running').hidden && document.getElementById('running-what').textContent.includes('deciding')");
+    browser.click("#stop");
+    browser.until(&format!("{VERDICTS} === 'stopped stopped'"));
+    browser.value("window.slow = () => false");
+    browser.value("[...document.querySelectorAll('#claims-summary button')].find(one => one.textContent === 'Go on').click()");
+    browser.until(&format!("{VERDICTS} === 'proved proved'"));
+    // the table of the old text is no table of the new one
+    browser.value("window.slow = ask => ask === 'rank'");
+    browser.write(&PENDULUM.replace("omega' = -k*sin(phi)", "omega' = 0"));
+    browser.until(&format!("{VERDICTS}.startsWith('refuted')"));
+    assert_eq!(browser.value("document.querySelector('#answers-unknowns').classList.contains('old')"), true);
+    browser.until("!document.querySelector('#answers-unknowns').classList.contains('old')");
+    browser.value("window.slow = () => false");
+    browser.write("");
+    browser.type_text("state x, v");
+    std::thread::sleep(std::time::Duration::from_millis(600));
+    browser.key("Enter", 13, 0);
+    browser.type_text("output x");
+    assert!(browser.text("document.querySelector('.cm-content').innerText").starts_with("state x, v\n"));
+    // an address that a stranger has made up
+    browser.page();
+    browser.go(&format!("http://{}/?token=evil", lab.host));
+    assert_eq!(browser.text("document.getElementById('notice').textContent"), "");
 }

@@ -3,6 +3,7 @@
 use super::place::Place;
 use super::{Refused, Tell};
 use palmistry_io::UNINTERRUPTED;
+use palmistry_io::foreign::shown;
 use palmistry_prove::claim::{Kept, decide_all_keeping};
 use palmistry_report::{Colour, Layout, claim_json, claim_text, formula_mathml};
 use serde_json::{Value, json};
@@ -24,7 +25,13 @@ pub(super) fn claims(
     decide_all_keeping(Kept::Verdicts, &system, seed, &UNINTERRUPTED, &|outcome| {
         let mut claim = claim_json(outcome);
         claim["mathml"] = json!(formula_mathml(&outcome.statement));
-        claim["text"] = json!(claim_text(outcome, &layout));
+        // a verdict is kept while its claim moves up and down
+        let (line, column) = outcome.place;
+        let place = format!("  {}:{line}:{column}", shown(&outcome.file));
+        claim["text"] = json!(claim_text(outcome, &layout).replace(&place, ""));
+        for key in ["line", "column", "file"] {
+            claim.as_object_mut().map(|claim| claim.remove(key));
+        }
         tell(json!({ "kind": "claim", "claim": claim }));
     });
     Ok(json!({ "claims": system.claims.len() }))

@@ -33,9 +33,16 @@ pub(super) fn draft(place: &Place<'_>) -> Value {
         found["discrete"] = json!(system.time == Time::Discrete);
         found["symbols"] = symbols(system);
         found["outputs"] = system.outputs.iter().map(|(text, _)| json!(text)).collect();
-        found["signals"] = signals(system).into_iter().map(|name| json!(name)).collect();
-        found["fields"] =
-            system.roles().iter().map(|one| json!({ "name": one.name, "role": one.role.name() })).collect();
+        let signals = signals(system);
+        // an input along which a signal changes is driven by the signal itself
+        let is_own = |name: &str| !signals.iter().any(|signal| name.trim_end_matches('\'') == signal);
+        found["fields"] = system
+            .roles()
+            .iter()
+            .filter(|one| is_own(&one.name))
+            .map(|one| json!({ "name": one.name, "role": one.role.name() }))
+            .collect();
+        found["signals"] = json!(signals);
         found["maps"] = maps(system);
         found["mathematics"] = json!(mathematics(system).into_string());
     }
@@ -51,6 +58,15 @@ fn base(place: &Place<'_>, draft: &Draft) -> String {
     };
     part(&place.own.to_string_lossy());
     part(&without_remarks(&without_claims(draft.plain())));
+    // how many derivatives of a signal there are follows from what is claimed, too
+    if let Some(system) = &draft.system {
+        for name in system.state_names().iter().chain(&system.known_names()) {
+            part(name);
+        }
+        for field in system.roles() {
+            part(&field.name);
+        }
+    }
     for (file, text) in &place.named {
         part(&file.to_string_lossy());
         part(text);

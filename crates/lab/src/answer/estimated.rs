@@ -9,6 +9,8 @@ use std::fmt::Write;
 /// A text for an observer.
 pub(super) struct Rewritten {
     pub text: String,
+    /// Constants that had a value and would have none any more: other components of a vector.
+    pub known: BTreeMap<String, f64>,
     /// The symbols that drive input fields, by the names of these.
     pub drives: BTreeMap<String, String>,
 }
@@ -28,19 +30,28 @@ pub(super) fn rewritten(
     };
     let moved: BTreeSet<&str> =
         estimate.iter().map(String::as_str).filter(|name| is_constant(name)).collect();
+    // a vector is declared as a whole
+    let vector = |name: &str| name.split('[').next().unwrap_or_default().to_owned();
+    let declared: BTreeSet<String> = moved.iter().map(|name| vector(name)).collect();
     // from the end of the text to its beginning, so that places stay
-    let mut ends: Vec<usize> = Vec::new();
+    let mut ends: Vec<(usize, usize)> = Vec::new();
     for (place, one) in outline.declarations.iter().enumerate() {
-        if one.kind != DeclarationKind::Parameter || !moved.contains(one.name.as_str()) {
+        if one.kind != DeclarationKind::Parameter || !declared.contains(&vector(&one.name)) {
             continue;
         }
         let next = outline.declarations.get(place + 1).filter(|next| next.entry == one.entry);
         let end = next.map_or(one.entry.end, |next| next.span.start).max(one.span.end);
-        ends.push(one.span.start + length_of_code(&plain[one.span.start..end]));
+        let code = &plain[one.span.start..one.span.start + length_of_code(&plain[one.span.start..end])];
+        // what was said to be known is not any more
+        let kept = code.strip_suffix("known").filter(|rest| rest.ends_with(char::is_whitespace));
+        if kept.is_some() || !code.ends_with("unknown") {
+            let kept = kept.unwrap_or(code).trim_end();
+            ends.push((one.span.start + kept.len(), one.span.start + code.len()));
+        }
     }
     let mut found = plain;
-    for end in ends.into_iter().rev() {
-        found.insert_str(end, " unknown");
+    for (from, to) in ends.into_iter().rev() {
+        found.replace_range(from..to, " unknown");
     }
     found.push('\n');
     for name in &moved {
@@ -56,6 +67,14 @@ pub(super) fn rewritten(
             let _ = writeln!(found, "sample {name} in [{low}, {high}]");
         }
     }
+    let is_other =
+        |name: &str| name.contains('[') && declared.contains(&vector(name)) && !moved.contains(name);
+    let known = system.symbols().filter_map(|(symbol, info)| {
+        let name = system.symbol_name(symbol);
+        let value = info.default.as_ref().filter(|_| is_other(name))?;
+        Some((name.to_owned(), rational_to_f64(value)))
+    });
+    let known = known.collect();
     let mut drives = BTreeMap::new();
     for field in driven {
         let mut name = format!("driving_{}", field.replace('.', "_"));
@@ -65,7 +84,7 @@ pub(super) fn rewritten(
         let _ = writeln!(found, "param {name}");
         drives.insert(field.clone(), name);
     }
-    Rewritten { text: found, drives }
+    Rewritten { text: found, known, drives }
 }
 
 /// How much of a declaration is left without the comma, the blanks and the comments behind it.
@@ -100,6 +119,13 @@ mod tests {
             range.map(|range| (rational_to_f64(&range.low), rational_to_f64(&range.high))),
             Some((1.0, 4.0))
         );
+        // what is said to be known, and a vector of which a component is estimated
+        let text = "system \"S\"\nstate x\nparam k = 2 known, c[1..2] = 3\ndrift f\n  x' = -k*x + c[1] + c[2]\noutput x\n";
+        let system: System = text.parse().expect("it is sound");
+        let found = rewritten(text, &system, &["k".to_owned(), "c[1]".to_owned()], &BTreeSet::new());
+        let read: System = found.text.parse().unwrap_or_else(|why| panic!("{why:?}\n{}", found.text));
+        assert!(read.state_names().len() == 4, "{:?}\n{}", read.state_names(), found.text);
+        assert_eq!(found.known, BTreeMap::from([("c[2]".to_owned(), 3.0)]));
         // what moves already stays as it is
         let same = rewritten(text, &system, &["x".to_owned()], &BTreeSet::new());
         assert_eq!(same.text.trim_end(), text.trim_end());

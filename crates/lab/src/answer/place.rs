@@ -65,8 +65,11 @@ fn inner(name: &str) -> Result<PathBuf, Refused> {
     let path = Path::new(name.strip_prefix(PACKED).unwrap_or(name));
     let is_plain = path.components().all(|part| matches!(part, Component::Normal(_)));
     let has_odd_letters = name.chars().any(|c| c.is_control() || c == '\\');
-    if path.as_os_str().is_empty() || !is_plain || has_odd_letters {
-        return Err(Refused::new("a file is named by a path within the folder, without '..'"));
+    let is_proof = path.extension().is_some_and(|end| end == "proof");
+    if !is_proof || !is_plain || has_odd_letters {
+        return Err(Refused::new(
+            "a file is named by a path within the folder that ends with .proof, without '..'",
+        ));
     }
     Ok(path.to_owned())
 }
@@ -174,9 +177,20 @@ mod tests {
         }
         let refers = "system \"a\"\nstate x\nclaim c restates d in \"../secret.proof\": x = x";
         assert!(refused("a.proof", refers, Some(&folder)).contains("outside"));
-        for name in
-            ["../a.proof", "/a.proof", "a/../../b.proof", ".", "..", "a\\b", "a\nb", "papers:", "papers:../a"]
-        {
+        for name in [
+            "../a.proof",
+            "/a.proof",
+            "a/../../b.proof",
+            ".",
+            "..",
+            "a\\b",
+            "a\nb",
+            "papers:",
+            "papers:../a",
+            "a.toml",
+            "scene.toml",
+            "proof",
+        ] {
             assert!(refused(name, "", Some(&folder)).contains("within"), "{name}");
         }
         #[cfg(unix)]

@@ -4,7 +4,7 @@ use super::Refused;
 use super::estimated::{Rewritten, rewritten};
 use super::place::Place;
 use palmistry_io::file::PACKED;
-use palmistry_lang::Dimension;
+use palmistry_lang::{Dimension, load};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -62,7 +62,13 @@ fn inline(values: &BTreeMap<String, f64>) -> Result<String, Refused> {
 
 impl ObserveAsked {
     /// The scene of a model, as a file; nothing in it but what is written here, and names in quotation marks.
-    fn scene(&self, title: &str, model: &str, drives: &BTreeMap<String, String>) -> Result<String, Refused> {
+    fn scene(
+        &self,
+        title: &str,
+        model: &str,
+        (drives, mut known): (&BTreeMap<String, String>, BTreeMap<String, f64>),
+    ) -> Result<String, Refused> {
+        known.extend(self.known.clone());
         // an input field is known by the symbol that drives it
         let symbol = |name: &String| drives.get(name).unwrap_or(name).clone();
         let mut out = format!("title = {}\nmodel = {}\nseed = {}\n", quoted(title), quoted(model), self.seed);
@@ -123,8 +129,8 @@ impl ObserveAsked {
         if let Some(window) = self.window {
             add(&mut out, format!("window = {window}"));
         }
-        if !self.known.is_empty() {
-            add(&mut out, format!("known = {}", inline(&self.known)?));
+        if !known.is_empty() {
+            add(&mut out, format!("known = {}", inline(&known)?));
         }
         if !self.guess.is_empty() {
             add(&mut out, format!("guess = {}", inline(&self.guess)?));
@@ -136,17 +142,19 @@ impl ObserveAsked {
     }
 }
 
-/// The page of an answer, in the folder of its question.
-pub(crate) const PAGE: &str = "the-page-of-this-answer.html";
+/// The page of an answer, in the folder of its question, beside the folder of files that a question names.
+pub(crate) const PAGE: &str = "page.html";
+const FILES: &str = "files";
 const RECORD: &str = "record.csv";
 const SCENE: &str = "scene.toml";
 
 /// Writes a text and what it names where they stand to each other as they do.
 fn written(place: &Place<'_>, work: &Path) -> Result<PathBuf, Refused> {
+    let files = work.join(FILES);
     for (file, text) in place.named.iter().map(|(file, text)| (file.as_path(), text.as_str())) {
-        write(&work.join(file), text)?;
+        write(&files.join(file), text)?;
     }
-    let own = work.join(&place.own);
+    let own = files.join(&place.own);
     write(&own, place.text)?;
     Ok(own)
 }
@@ -212,7 +220,7 @@ pub(super) fn observe(place: &Place<'_>, asked: &ObserveAsked, work: &Path) -> R
         MeasuredFrom::Record { columns, .. } => columns.keys().filter(is_driven).cloned().collect(),
         MeasuredFrom::Motion { inputs, .. } => inputs.keys().filter(is_driven).cloned().collect(),
     };
-    let Rewritten { text, drives } = rewritten(place.text, &system, &asked.estimate, &driven);
+    let Rewritten { text, known, drives } = rewritten(place.text, &system, &asked.estimate, &driven);
     let own = written(place, work)?;
     write(&own, &text)?;
     let folder = own.parent().unwrap_or(work).to_owned();
@@ -220,7 +228,7 @@ pub(super) fn observe(place: &Place<'_>, asked: &ObserveAsked, work: &Path) -> R
     if let MeasuredFrom::Record { csv, .. } = &asked.from {
         write(&folder.join(RECORD), csv)?;
     }
-    let scene = asked.scene(&system.title, &model, &drives)?;
+    let scene = asked.scene(&system.title, &model, (&drives, known))?;
     write(&folder.join(SCENE), &scene)?;
     let found = command(&["observe", SCENE, "--json", "--out", "page"], &folder)?.json()?;
     let units: BTreeMap<String, Option<String>> = system
@@ -249,7 +257,9 @@ pub(super) fn scene(scene: &Path, work: &Path) -> Result<Value, Refused> {
         Ok(found) => found,
     };
     let motion = std::fs::read_to_string(work.join("motion.csv")).ok();
-    Ok(json!({ "observed": found, "motion": motion, "has_page": keep_page(&work.join("page"), work) }))
+    Ok(
+        json!({ "observed": found, "motion": motion, "scene": load(scene)?, "has_page": keep_page(&work.join("page"), work) }),
+    )
 }
 
 /// The page of the text as a paper of one file.
@@ -271,12 +281,12 @@ pub(super) fn import(files: &BTreeMap<String, String>, work: &Path) -> Result<Va
         let plain = Path::new(name).file_name().map(|name| name.to_string_lossy().into_owned());
         let plain = plain.filter(|plain| !plain.starts_with('-') && !plain.chars().any(char::is_control));
         let plain = plain.ok_or_else(|| Refused::new("this is no name of a file"))?;
-        write(&work.join(&plain), text)?;
+        write(&work.join(FILES).join(&plain), text)?;
         names.push(plain);
     }
     // a problem of parameter estimation is named by its YAML, and names the others
     let is_problem = |name: &&String| name.ends_with(".yaml") || name.ends_with(".yml");
     let main = names.iter().find(is_problem).or(names.first());
     let main = main.ok_or_else(|| Refused::new("no file was given"))?;
-    command(&["import", main, "--json"], work)?.json()
+    command(&["import", main, "--json"], &work.join(FILES))?.json()
 }

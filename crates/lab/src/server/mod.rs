@@ -11,9 +11,10 @@ pub use guard::Access;
 use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use route::Router;
-use std::net::SocketAddr;
+use std::collections::HashMap;
+use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio::sync::Semaphore;
@@ -22,8 +23,6 @@ use tokio::sync::Semaphore;
 const PAUSE: Duration = Duration::from_millis(50);
 /// Whoever has not asked anything after this is no longer waited for.
 const HEAD: Duration = Duration::from_secs(15);
-/// More connections at once are refused.
-const MOST_CONNECTIONS: usize = 1024;
 
 /// What a question may take.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +35,11 @@ pub struct QuestionLimits {
     pub memory: u64,
     /// The length of a question, in bytes: a text, or a recording.
     pub question: usize,
-    /// Questions at once, of all clients and of one.
+    /// Questions that wait or are answered, of all clients and of one: one more is refused.
+    pub places: [usize; 2],
+    /// Connections at once, of all clients and of one: one more is closed.
+    pub connections: [usize; 2],
+    /// Questions that are answered at once, of all clients and of one.
     pub at_once: [usize; 2],
 }
 
@@ -106,7 +109,9 @@ impl LabServer {
     pub fn run(self, stop: &dyn Fn() -> bool) {
         let LabServer { runtime, listener, router, .. } = self;
         runtime.block_on(async {
-            let connections = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+            let [of_all, of_one] = router.connections();
+            let connections = Arc::new(Semaphore::new(of_all));
+            let clients: Arc<Mutex<HashMap<IpAddr, usize>>> = Arc::default();
             while !stop() {
                 let Ok(accepted) = tokio::time::timeout(PAUSE, listener.accept()).await else { continue };
                 // too many files are open, or the other end has gone: both pass
@@ -116,6 +121,7 @@ impl LabServer {
                 };
                 // one more is closed at once
                 let Ok(permit) = connections.clone().try_acquire_owned() else { continue };
+                let Some(one) = OfClient::new(&clients, client.ip(), of_one) else { continue };
                 let router = router.clone();
                 let longest = router.longest();
                 tokio::spawn(async move {
@@ -131,10 +137,44 @@ impl LabServer {
                     let _ =
                         tokio::time::timeout(longest, server.serve_connection(TokioIo::new(stream), service))
                             .await;
-                    drop(permit);
+                    drop((permit, one));
                 });
             }
         });
         runtime.shutdown_timeout(PAUSE);
+    }
+}
+
+type Clients = Arc<Mutex<HashMap<IpAddr, usize>>>;
+
+/// A connection among those of its client.
+struct OfClient {
+    clients: Clients,
+    client: IpAddr,
+}
+
+impl OfClient {
+    /// One more of a client; none where it has so many.
+    fn new(clients: &Clients, client: IpAddr, most: usize) -> Option<OfClient> {
+        let mut counts = clients.lock().unwrap_or_else(PoisonError::into_inner);
+        let count = counts.entry(client).or_default();
+        if *count >= most {
+            return None;
+        }
+        *count += 1;
+        Some(OfClient { clients: clients.clone(), client })
+    }
+}
+
+impl Drop for OfClient {
+    fn drop(&mut self) {
+        let mut counts = self.clients.lock().unwrap_or_else(PoisonError::into_inner);
+        let left = counts.get_mut(&self.client).map(|count| {
+            *count -= 1;
+            *count
+        });
+        if left == Some(0) {
+            counts.remove(&self.client);
+        }
     }
 }

@@ -24,6 +24,7 @@ pub(super) fn asset(path: &str) -> Option<Asset> {
         "/motion.js" => (SCRIPT, include_str!("../../web/motion.js")),
         "/observe.js" => (SCRIPT, include_str!("../../web/observe.js")),
         "/models.js" => (SCRIPT, include_str!("../../web/models.js")),
+        "/values.js" => (SCRIPT, include_str!("../../web/values.js")),
         "/scene.js" => (SCRIPT, include_str!("../../web/scene.js")),
         "/chart.js" => (SCRIPT, include_str!("../../web/chart.js")),
         "/editor.js" => (SCRIPT, include_str!("../../web/editor.min.js")),

@@ -43,6 +43,11 @@ impl Router {
         Router { access, own, folder, workers, pages: Arc::default() }
     }
 
+    /// How many connections there may be, of all clients and of one.
+    pub fn connections(&self) -> [usize; 2] {
+        self.workers.limits.connections
+    }
+
     /// How long a connection may last: a dear question, and as long as it takes to send its answer.
     pub fn longest(&self) -> Duration {
         self.workers.limits.dear + 10 * SENDING
@@ -142,8 +147,15 @@ impl Router {
                 );
                 let effort = if is_cheap { Effort::Cheap } else { Effort::Dear };
                 let (sender, lines) = Lines::new();
+                let Some(place) = self.workers.place(client) else {
+                    let why = "too many questions wait here: ask again when some are answered";
+                    return refused(StatusCode::TOO_MANY_REQUESTS, why);
+                };
                 let (workers, pages) = (self.workers.clone(), self.pages.clone());
-                tokio::spawn(async move { workers.answer(question, (client, effort), sender, &pages).await });
+                tokio::spawn(async move {
+                    workers.answer(question, (client, effort), sender, &pages).await;
+                    drop(place);
+                });
                 answer_with(StatusCode::OK, "application/x-ndjson", Either::Right(lines))
             }
             ("/api/files" | "/api/read" | "/api/save", Some(served)) => {

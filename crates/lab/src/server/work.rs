@@ -48,12 +48,14 @@ pub(super) enum Effort {
 struct Gates {
     cheap: Arc<Semaphore>,
     dear: Arc<Semaphore>,
+    /// One for each question that waits or is answered.
+    places: Arc<Semaphore>,
 }
 
 impl Gates {
-    fn new(at_once: usize) -> Gates {
-        let gate = || Arc::new(Semaphore::new(at_once));
-        Gates { cheap: gate(), dear: gate() }
+    fn new(at_once: usize, places: usize) -> Gates {
+        let gate = |permits| Arc::new(Semaphore::new(permits));
+        Gates { cheap: gate(at_once), dear: gate(at_once), places: gate(places) }
     }
 
     fn of(&self, effort: Effort) -> Arc<Semaphore> {
@@ -64,7 +66,7 @@ impl Gates {
     }
 
     fn is_idle(&self) -> bool {
-        Arc::strong_count(&self.cheap) == 1 && Arc::strong_count(&self.dear) == 1
+        [&self.cheap, &self.dear, &self.places].iter().all(|gate| Arc::strong_count(gate) == 1)
     }
 }
 
@@ -74,25 +76,40 @@ pub(super) struct Turn {
     _all: OwnedSemaphorePermit,
 }
 
+/// A place among the questions that wait.
+pub(super) struct QuestionPlace {
+    _client: OwnedSemaphorePermit,
+    _all: OwnedSemaphorePermit,
+}
+
 /// Clients that ask nothing are forgotten when there are more.
 const MOST_CLIENTS: usize = 4096;
 
 impl Workers {
     pub fn new(program: (PathBuf, Vec<String>), folder: Option<PathBuf>, limits: QuestionLimits) -> Workers {
-        let all = Gates::new(limits.at_once[0]);
+        let all = Gates::new(limits.at_once[0], limits.places[0]);
         Workers { program, folder, limits, all, clients: Mutex::default() }
+    }
+
+    fn gates(&self, client: IpAddr) -> Gates {
+        let mut clients = self.clients.lock().unwrap_or_else(PoisonError::into_inner);
+        if clients.len() > MOST_CLIENTS {
+            clients.retain(|_, gates| !gates.is_idle());
+        }
+        let new = || Gates::new(self.limits.at_once[1], self.limits.places[1]);
+        clients.entry(client).or_insert_with(new).clone()
+    }
+
+    /// A place for a question, which is kept while it waits and is answered; none where too many wait.
+    pub fn place(&self, client: IpAddr) -> Option<QuestionPlace> {
+        let of_client = self.gates(client).places.try_acquire_owned().ok()?;
+        let of_all = self.all.places.clone().try_acquire_owned().ok()?;
+        Some(QuestionPlace { _client: of_client, _all: of_all })
     }
 
     /// Waits for a turn: those of one client first, so that one that asks much waits for itself and not for all.
     async fn turn(&self, client: IpAddr, effort: Effort) -> Option<Turn> {
-        let of_client = {
-            let mut clients = self.clients.lock().unwrap_or_else(PoisonError::into_inner);
-            if clients.len() > MOST_CLIENTS {
-                clients.retain(|_, gates| !gates.is_idle());
-            }
-            clients.entry(client).or_insert_with(|| Gates::new(self.limits.at_once[1])).of(effort)
-        };
-        let client = of_client.acquire_owned().await.ok()?;
+        let client = self.gates(client).of(effort).acquire_owned().await.ok()?;
         let all = self.all.of(effort).acquire_owned().await.ok()?;
         Some(Turn { _client: client, _all: all })
     }
@@ -162,10 +179,11 @@ impl Workers {
             Err(why) => return cannot(why),
         };
         let mut child = match self.command(work.path(), time).spawn() {
-            Ok(child) => Group(child),
+            Ok(child) => Group::new(child),
             Err(why) => return cannot(why),
         };
-        let (input, output, said) = (child.0.stdin.take(), child.0.stdout.take(), child.0.stderr.take());
+        let (input, output, said) =
+            (child.own.stdin.take(), child.own.stdout.take(), child.own.stderr.take());
         let (Some(mut input), Some(output), Some(said)) = (input, output, said) else {
             return Some(error("a question cannot be answered now", ""));
         };
@@ -198,10 +216,12 @@ impl Workers {
             }
         };
         tokio::join!(write, listen, read);
-        let status = child.0.wait().await;
-        let kind =
-            serde_json::from_slice::<Value>(&last).map(|last| last["kind"].clone()).unwrap_or_default();
-        if ["done", "error"].iter().any(|end| kind == *end) {
+        let status = child.own.wait().await;
+        let last = serde_json::from_slice::<Value>(&last).unwrap_or_default();
+        if ["done", "error"].iter().any(|end| last["kind"] == *end) {
+            if last["has_page"] != true {
+                return None;
+            }
             // a page comes from the program alone, and not over the page that asks
             let page = tokio::fs::read_to_string(work.path().join(PAGE)).await.ok();
             return page.map(|page| json!({ "kind": "page", "page": pages.keep(page) }));
@@ -219,16 +239,30 @@ impl Workers {
     }
 }
 
-/// A process with all that it has started.
-struct Group(Child);
+/// A process with all that it has started, which may outlive it.
+struct Group {
+    own: Child,
+    #[cfg(unix)]
+    id: Option<rustix::process::Pid>,
+}
+
+impl Group {
+    fn new(own: Child) -> Group {
+        #[cfg(unix)]
+        let id = own.id().and_then(|id| rustix::process::Pid::from_raw(i32::try_from(id).ok()?));
+        Group {
+            own,
+            #[cfg(unix)]
+            id,
+        }
+    }
+}
 
 impl Drop for Group {
     fn drop(&mut self) {
         #[cfg(unix)]
-        if let Some(id) =
-            self.0.id().and_then(|id| i32::try_from(id).ok()).and_then(rustix::process::Pid::from_raw)
-        {
-            // what has ended is killed by nobody
+        if let Some(id) = self.id {
+            // a group without processes is killed by nobody
             let _ = rustix::process::kill_process_group(id, rustix::process::Signal::KILL);
         }
     }

@@ -128,7 +128,8 @@ const SAMPLES: u64 = 1000;
 const SEED: u64 = 1;
 
 impl<'s> Landscape<'s> {
-    /// The rows at the given values; what is not given has the file's value, or the middle of its range. The scales are those of the
+    /// The rows at the given values; what is not given has the file's value, or the middle of its range, be it the one that is taken where the
+    /// file gives none. The scales are those of the
     /// file's sample box, wherever is looked.
     ///
     /// # Errors
@@ -137,7 +138,8 @@ impl<'s> Landscape<'s> {
         let mut values: HashMap<Symbol, f64> = system
             .symbols()
             .filter_map(|(symbol, info)| {
-                let middle = info.range.as_ref().map(|range| (&range.low + &range.high) / RBig::from(2));
+                let range = info.range.clone().or_else(|| system.default_range(symbol));
+                let middle = range.map(|range| (&range.low + &range.high) / RBig::from(2));
                 Some((symbol, info.default.clone().or(middle)?.to_f64().value()))
             })
             .collect();
