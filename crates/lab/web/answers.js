@@ -5,6 +5,8 @@ import { ask, element, formula, refusal } from "/ask.js";
 /** The words that stand beside a claim while it is decided. */
 const PENDING = "...";
 const STOPPED = "stopped";
+/** In ms. */
+const SOON = 30;
 
 /** The panel of the answers. Verdicts are kept by what they depend on, so that what did not change is not decided again. */
 export class Answers {
@@ -33,6 +35,7 @@ export class Answers {
         this.isStopped = false;
         this.results.replaceChildren();
         for (const name of ["claims", "unknowns", "system"]) this.blocks[name].replaceChildren();
+        this.mathematicsShown = null;
         this.blocks.more.hidden = true;
     }
 
@@ -70,7 +73,7 @@ export class Answers {
         const take = found => {
             if (found.kind !== "claim") return;
             this.known.set(keys.get(found.claim.id), found.claim);
-            this.listed();
+            this.listedSoon();
         };
         const question = { ask: "claims", ...draft.question, only: [...keys.keys()] };
         try {
@@ -81,6 +84,7 @@ export class Answers {
             this.isStopped = true;
             this.listed();
         }
+        this.listed();
         // thousands of texts later the first ones are forgotten
         while (this.known.size > 20000) this.known.delete(this.known.keys().next().value);
     }
@@ -111,8 +115,15 @@ export class Answers {
         return this.draft.sound ? this.known.get(claim.key) : null;
     }
 
+    /** A hundred verdicts that come at once are shown at once. */
+    listedSoon() {
+        this.soon ??= setTimeout(() => this.listed(), SOON);
+    }
+
     /** Claims with their verdicts, beside the text and in a list. */
     listed() {
+        clearTimeout(this.soon);
+        this.soon = null;
         const { draft } = this;
         const pending = this.isStopped ? STOPPED : PENDING;
         const found = draft.claims.map(claim => ({ claim, outcome: this.of(claim) }));
@@ -148,12 +159,18 @@ export class Answers {
     item(claim, outcome, open, pending) {
         const word = outcome?.verdict ?? pending;
         const head = element("summary", {}, element("span", { class: "verdict", "data-w": word, "data-ok": String(outcome?.ok ?? true) }, word), " ", claim.id);
-        const body = outcome ? [
-            element("div", { class: "formula" }, formula(outcome.mathml, outcome.statement)),
-            element("pre", {}, outcome.text),
-            outcome.engine ? element("p", { class: "hint" }, `by ${outcome.engine}`, outcome.error_bound && outcome.error_bound !== "0" ? `; error probability below ${outcome.error_bound}` : "") : null,
-        ] : [];
-        const details = element("details", { "data-id": claim.id, open }, head, ...body.filter(Boolean), element("button", { onclick: () => this.lab.text.show(claim.range) }, "Show in the text"));
+        const details = element("details", { "data-id": claim.id }, head);
+        // of hundreds of claims one or two are looked into
+        const fill = () => {
+            if (!details.open || details.childElementCount > 1) return;
+            const error = outcome?.error_bound && outcome.error_bound !== "0" ? `; error probability below ${outcome.error_bound}` : "";
+            const body = outcome ? [element("div", { class: "formula" }, formula(outcome.mathml, outcome.statement)), element("pre", {}, outcome.text)] : [];
+            if (outcome?.engine) body.push(element("p", { class: "hint" }, `by ${outcome.engine}${error}`));
+            details.append(...body, element("button", { onclick: () => this.lab.text.show(claim.range) }, "Show in the text"));
+        };
+        details.addEventListener("toggle", fill);
+        details.open = open;
+        fill();
         return element("li", { "data-w": word }, details);
     }
 
@@ -163,6 +180,7 @@ export class Answers {
         for (const details of this.blocks.claims.querySelectorAll("details")) {
             if (details.dataset.id !== id) continue;
             details.open = true;
+            details.dispatchEvent(new Event("toggle"));
             details.scrollIntoView({ block: "center" });
             details.querySelector("summary").focus();
         }
@@ -241,6 +259,9 @@ export class Answers {
     }
 
     mathematics(draft) {
+        const shown = JSON.stringify([draft.title, draft.cite, draft.mathematics]);
+        if (shown === this.mathematicsShown) return;
+        this.mathematicsShown = shown;
         const found = element("div");
         found.innerHTML = draft.mathematics;
         this.blocks.system.replaceChildren(element("h2", {}, "The system"), element("p", {}, element("b", {}, draft.title ?? ""), draft.cite ? ` (${draft.cite})` : ""),
