@@ -30,11 +30,12 @@ const PORT: u16 = 8417;
 #[command(after_help = "Examples:
   palmistry lab                             an empty page; nothing is written
   palmistry lab mypaper                     with the proof files of a folder
+  palmistry lab mysystem.proof              with one of them
   palmistry lab --no-open --port 9000       print the address, and open no browser
   palmistry lab --public 0.0.0.0:8417       for a group: no files, and a limit for each client")]
 pub(crate) struct Lab {
-    /// The folder whose proof files the page opens and saves.
-    #[arg(value_name = "FOLDER")]
+    /// The folder whose proof files the page opens and saves; or one of its files, with which it begins.
+    #[arg(value_name = "FOLDER-OR-FILE")]
     folder: Option<PathBuf>,
     /// Listen on this port; 0 is any free one [default: 8417, or any free one].
     #[arg(long, value_name = "N")]
@@ -160,7 +161,7 @@ impl Lab {
                 "choose another port, or 0 for any free one",
             ),
             LabError::Folder(folder, why) => {
-                Unusable::report(format!("cannot read the folder {}: {why}", shown_path(&folder)), "")
+                Unusable::report(format!("cannot read {}: {why}", shown_path(&folder)), "")
             }
             LabError::Threads(why) => Unusable::report(
                 format!("the system gives no thread to work on: {why}"),

@@ -59,7 +59,7 @@ class Lab {
         document.body.dataset.ready = "true";
     }
 
-    /** The text of the link; else the one that was here last; else an example. */
+    /** The text of the link; else the file that the lab was started with; else the text that was here last; else an example. */
     async first() {
         try {
             const found = await fromLink(location.hash);
@@ -72,6 +72,15 @@ class Lab {
             const kept = JSON.parse(sessionStorage.getItem(KEPT));
             if (typeof kept?.text === "string") return kept;
         } catch { /* a browser that keeps nothing */ }
+        const { file } = this.session;
+        if (file) {
+            try {
+                const { text } = await ask("read", { file });
+                return { text, file, was: text };
+            } catch (error) {
+                this.failure = error;
+            }
+        }
         return { text: EXAMPLE, file: "" };
     }
 
@@ -247,7 +256,9 @@ class Lab {
             const texts = Object.fromEntries(await Promise.all(files.map(async file => [file.name, await file.text()])));
             if (/\.proof$/i.test(first.name)) return this.put(texts[first.name], first.name);
             const found = await this.run(`importing ${first.name}`, signal => ask("answer", { ask: "import", files: texts }, { signal }));
-            this.put(found.proof, first.name.replace(/\.[^.]*$/, "").replace(/[^A-Za-z0-9_-]+/g, "_") + ".proof");
+            const main = files.find(file => /\.ya?ml$/i.test(file.name)) ?? first;
+            this.put(found.proof, main.name.replace(/\.[^.]*$/, "").replace(/[^A-Za-z0-9_-]+/g, "_") + ".proof");
+            if (found.format === "petab") this.panels.observe.problem(texts, found);
             if (found.remarks?.length) this.notice(new Error(found.remarks.join("; ")));
         } catch (error) {
             if (error.name !== "AbortError") this.notice(error);

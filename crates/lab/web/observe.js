@@ -38,6 +38,7 @@ export class Observe {
         this.mapped = element("div", { class: "row" });
         this.unknowns = element("fieldset", {}, element("legend", {}, "to be estimated"));
         this.result = element("div");
+        this.fit = element("div", { class: "row" });
         const go = element("button", { onclick: () => this.estimate() }, "Estimate");
         this.live = element("input", { type: "checkbox", checked: true });
         panel.append(
@@ -45,7 +46,7 @@ export class Observe {
             element("div", { class: "row" }, element("label", {}, "recording", this.file), element("button", { onclick: () => this.taken(null) }, "Simulate instead")),
             this.source, this.mapped, this.simulated, this.unknowns, this.windows,
             element("div", { class: "row" }, element("label", {}, "method", this.method), go, element("label", {}, this.live, "at each change")),
-            this.result);
+            this.fit, this.result);
         panel.addEventListener("dragover", event => { event.preventDefault(); panel.classList.add("dropping"); });
         panel.addEventListener("dragleave", () => panel.classList.remove("dropping"));
         panel.addEventListener("drop", event => {
@@ -56,8 +57,27 @@ export class Observe {
         });
     }
 
+    /** A problem of parameter estimation that was imported: it is fitted as its files state it, whatever the text has become. */
+    problem(files, { measured, experiments }) {
+        const button = element("button", { onclick: () => this.fitted(files) }, "Fit the imported problem");
+        this.fit.replaceChildren(button, element("span", { class: "hint" }, `as its files state it: ${measured} measurements of ${experiments} ${experiments === 1 ? "experiment" : "experiments"}, from several starts`));
+    }
+
+    async fitted(files) {
+        clearTimeout(this.timer);
+        this.abort?.abort();
+        const abort = this.abort = new AbortController();
+        try {
+            const { page } = await this.lab.run("the fit", signal => ask("answer", { ask: "fit", files }, { signal }), abort);
+            this.result.replaceChildren(element("iframe", { src: `/page/${page}`, title: "The fit: parameters, profiles, residuals", sandbox: "allow-scripts" }));
+        } catch (error) {
+            if (error.name !== "AbortError") this.result.replaceChildren(refusal(error));
+        }
+    }
+
     /** Another file is another system. */
     forget() {
+        this.fit.replaceChildren();
         this.base = null;
         this.columns.clear();
     }
@@ -165,6 +185,7 @@ export class Observe {
     }
 
     async estimate() {
+        clearTimeout(this.timer);
         if (!this.draft?.sound) return;
         if (this.chosen.size === 0) return this.result.replaceChildren(element("p", { class: "hint" }, "Choose what is to be estimated."));
         this.isNew = false;

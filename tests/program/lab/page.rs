@@ -129,6 +129,23 @@ fn a_model_is_imported_stopped_and_linked() {
     browser.until(&format!("document.getElementById('file-name').textContent === 'covid.proof' && {TOLD}"));
     browser.until("document.querySelector('.unknowns')");
     browser.picture("an_import");
+    // a problem of parameter estimation with its measurements
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/petab/Boehm_JProteomeRes2014");
+    let files: Vec<_> =
+        std::fs::read_dir(folder).expect("it is there").map(|entry| entry.expect("a file").path()).collect();
+    let files: Vec<&Path> = files
+        .iter()
+        .map(|file| file.as_path())
+        .filter(|file| file.extension().is_some_and(|end| end != "md"))
+        .collect();
+    browser.choose("#chosen", &files);
+    browser.until(&format!(
+        "document.getElementById('file-name').textContent === 'Boehm_JProteomeRes2014.proof' && {TOLD}"
+    ));
+    browser.click("#tab-observe");
+    browser.value("[...document.querySelectorAll('#observe button')].find(one => one.textContent === 'Fit the imported problem').click()");
+    browser.until("document.querySelector('#observe iframe[title^=\"The fit\"]')");
+    browser.picture("a_problem");
     open(&mut browser, "benchmarks/pharm.proof");
     browser.value("[...document.querySelectorAll('#answers-more button')].find(one => one.textContent === 'Globally?').click()");
     browser.until("!document.getElementById('running').hidden");

@@ -78,6 +78,8 @@ enum Ask {
     Page,
     /// A proof file from a file of another program.
     Import { files: BTreeMap<String, String> },
+    /// The fit of a problem of parameter estimation.
+    Fit { files: BTreeMap<String, String> },
     /// The models that came with the program.
     Models,
     /// The text of one of them.
@@ -156,6 +158,7 @@ fn answered(
         Ask::Scene { scene } => run::scene(&scene, work),
         Ask::Page => run::page(&place()?, work),
         Ask::Import { files } => run::import(&files, work),
+        Ask::Fit { files } => run::fit(&files, work),
         Ask::Models => Ok(models::models()),
         Ask::Model { model } => models::model(&model),
     }

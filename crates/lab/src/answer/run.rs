@@ -276,6 +276,20 @@ pub(super) fn page(place: &Place<'_>, work: &Path) -> Result<Value, Refused> {
 
 /// A proof file from files of another program: the model, and what it needs beside it.
 pub(super) fn import(files: &BTreeMap<String, String>, work: &Path) -> Result<Value, Refused> {
+    let main = main_of(files, work)?;
+    command(&["import", &main, "--json"], &work.join(FILES))?.json()
+}
+
+/// The fit of a problem of parameter estimation, as its files state it.
+pub(super) fn fit(files: &BTreeMap<String, String>, work: &Path) -> Result<Value, Refused> {
+    let (main, folder) = (main_of(files, work)?, work.join(FILES));
+    command(&["import", &main, "--json", "--out", "../problem.proof"], &folder)?.json()?;
+    let found = command(&["observe", "problem.toml", "--json", "--out", "page"], work)?.json()?;
+    Ok(json!({ "observed": found, "has_page": keep_page(&work.join("page"), work) }))
+}
+
+/// Writes the files, and tells which of them is to be imported.
+fn main_of(files: &BTreeMap<String, String>, work: &Path) -> Result<String, Refused> {
     let mut names = Vec::new();
     for (name, text) in files {
         let plain = Path::new(name).file_name().map(|name| name.to_string_lossy().into_owned());
@@ -287,6 +301,5 @@ pub(super) fn import(files: &BTreeMap<String, String>, work: &Path) -> Result<Va
     // a problem of parameter estimation is named by its YAML, and names the others
     let is_problem = |name: &&String| name.ends_with(".yaml") || name.ends_with(".yml");
     let main = names.iter().find(is_problem).or(names.first());
-    let main = main.ok_or_else(|| Refused::new("no file was given"))?;
-    command(&["import", main, "--json"], &work.join(FILES))?.json()
+    main.cloned().ok_or_else(|| Refused::new("no file was given"))
 }

@@ -13,7 +13,7 @@ use hyper_util::rt::{TokioIo, TokioTimer};
 use route::Router;
 use std::collections::HashMap;
 use std::net::{IpAddr, SocketAddr};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use tokio::net::TcpListener;
@@ -50,7 +50,7 @@ pub struct LabOptions {
     pub address: SocketAddr,
     /// Who may ask.
     pub access: Access,
-    /// The folder whose files may be read, and written where the page says so.
+    /// The folder whose files may be read, and written where the page says so; or a file in it, with which the page begins.
     pub folder: Option<PathBuf>,
     /// What one question may take.
     pub limits: QuestionLimits,
@@ -84,11 +84,17 @@ impl LabServer {
     /// [`LabError`].
     pub fn new(options: LabOptions) -> Result<LabServer, LabError> {
         let LabOptions { address, access, folder, limits, program } = options;
-        let folder = match folder {
-            None => None,
-            Some(folder) => {
-                let real = folder.canonicalize().and_then(|real| std::fs::read_dir(&real).map(|_| real));
-                Some(real.map_err(|why| LabError::Folder(folder, why))?)
+        let (folder, file) = match folder {
+            None => (None, None),
+            Some(given) => {
+                let found = given.canonicalize().and_then(|real| match real.is_file() {
+                    false => std::fs::read_dir(&real).map(|_| (Some(real), None)),
+                    true => {
+                        let name = real.file_name().map(|name| name.to_string_lossy().into_owned());
+                        Ok((real.parent().map(Path::to_owned), name))
+                    }
+                });
+                found.map_err(|why| LabError::Folder(given, why))?
             }
         };
         let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build();
@@ -96,7 +102,7 @@ impl LabServer {
         let listener = runtime.block_on(TcpListener::bind(address));
         let listener = listener.map_err(|why| LabError::Address(address, why))?;
         let address = listener.local_addr().map_err(|why| LabError::Address(address, why))?;
-        let router = Arc::new(Router::new(access, address, folder, limits, program));
+        let router = Arc::new(Router::new(access, address, (folder, file), limits, program));
         Ok(LabServer { runtime, listener, router, address })
     }
 

@@ -26,6 +26,8 @@ pub(super) struct Router {
     access: Access,
     own: SocketAddr,
     folder: Option<PathBuf>,
+    /// The file of it with which the page begins.
+    file: Option<String>,
     workers: Arc<Workers>,
     pages: Arc<Pages>,
 }
@@ -34,13 +36,13 @@ impl Router {
     pub fn new(
         access: Access,
         own: SocketAddr,
-        folder: Option<PathBuf>,
+        (folder, file): (Option<PathBuf>, Option<String>),
         limits: QuestionLimits,
         program: (PathBuf, Vec<String>),
     ) -> Router {
         let folder = folder.filter(|_| !matches!(access, Access::Public));
         let workers = Arc::new(Workers::new(program, folder.clone(), limits));
-        Router { access, own, folder, workers, pages: Arc::default() }
+        Router { access, own, folder, file, workers, pages: Arc::default() }
     }
 
     /// How many connections there may be, of all clients and of one.
@@ -133,6 +135,7 @@ impl Router {
                 "kind": "done",
                 "version": env!("CARGO_PKG_VERSION"),
                 "folder": self.folder.as_ref().and_then(|folder| folder.file_name()).map(|name| name.to_string_lossy()),
+                "file": self.file,
                 "public": matches!(self.access, Access::Public),
                 "words": words(),
             })),
