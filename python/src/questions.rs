@@ -7,7 +7,7 @@ use crate::work::{interruptible, keeping};
 use palmistry::checker::{Checking, Effort, LARGEST_FILE, ProofSources, VerdictFile};
 use palmistry::design::{AdditionKind, DesignQuestion, design as ask_design};
 use palmistry::drops::where_it_drops;
-use palmistry::file::read_text;
+use palmistry::file::{read_old_text, read_text};
 use palmistry::foreign::name_of;
 use palmistry::import::{ForeignFormat, ForeignUnknowns, ImportQuestion, import, import_petab, petab_beside};
 use palmistry::reduction::{ReduceQuestion, reduce};
@@ -214,7 +214,7 @@ pub fn imported(
     };
     let question = ImportQuestion { format, model, outputs, unknowns, known_inputs, unknown_inputs, states };
     let name = name_of(&path);
-    let text = interruptible(py, move |_| read_text(&path, LONGEST_MODEL))?;
+    let text = interruptible(py, move |_| read_old_text(&path, LONGEST_MODEL))?;
     let text = text.map_err(|why| unusable(py, &format!("cannot read {name}: {why}"), None))?;
     let found = interruptible(py, move |_| import(&name, &text, &question))?;
     let found = found.map_err(|error| unreadable(py, &error))?;

@@ -104,7 +104,7 @@ impl From {
 impl Import {
     pub fn run(self) -> miette::Result<Status> {
         let shown = name_of(&self.file);
-        let text = file::read_text(&self.file, LONGEST_FILE)
+        let text = file::read_old_text(&self.file, LONGEST_FILE)
             .map_err(|why| Unusable::report(format!("cannot read {shown}: {why}"), ""))?;
         if matches!(self.from, Some(From::Petab)) || self.from.is_none() && is_petab(&text) {
             return self.run_petab(&shown, &text);

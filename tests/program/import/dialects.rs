@@ -325,3 +325,30 @@ fn peculiarities_of_each_language() {
     assert!(matlab.text.contains("z2' = (b - 1)*z1 + a*z2 - 2^2"), "{}", matlab.text);
     assert_eq!(compare(&matlab, 5), 15);
 }
+
+/// Elements that are assigned to, loops that are gone through, numbers as Fortran writes them: against the same model without them.
+#[test]
+fn loops_and_elements_of_scripts() {
+    let body = |text: &str| text.split_once("state").expect("a model").1.to_owned();
+    let head = "syms x1 x2 x3 k d\nx = [x1; x2; x3]; p = [k; d]; h = x3;\n";
+    let plain = |rates: &str| body(&of_text("a.m", &format!("{head}f = [{rates}];\n")).text);
+    let loops = |lines: &str| {
+        let imported = of_text("a.m", &format!("{head}{lines}"));
+        assert!(compare(&imported, 5) > 0, "{lines}");
+        body(&imported.text)
+    };
+    let chain = plain("-d*x1 + k; -d*x2 + k*x1; -d*x3 + k*x2");
+    for lines in [
+        "f(1) = -d*x1 + k;\nf(2) = -d*x2 + k*x1;\nf(3) = -d*x3 + k*x2;\n",
+        "f(3) = -d*x3 + k*x2; f(1,1) = -d*x1 + k; f(2,1) = -d*x2 + k*x1;",
+        "n = length(x); f = sym(zeros(n, 1));\nfor i = 1:n\n  f(i) = -d*x(i);\nend\nf(1) = f(1) + k;\nfor i = 2:n, f(i) = f(i) + k*x(i-1); end\n",
+        "f = zeros(size(x, 1), 1);\nfor (i = numel(x):-1:1)\n  for j = [1]\n    f(i) = f(i) - d*x(i*j);\n  end\nend\nfor i = 1:0\n  f(1) = nonsense(x(end));\n for k = 1:3\n end\nend\nf(1) = f(1) + k; f(2) = f(2) + k*x1; f(3) = f(3) + k*x2;\n",
+        "f = [0; 0; 0]; for i = [3 1 2]; f(i) = -d*x(i); end; f = f + [k; k*x1; k*x2];",
+    ] {
+        // a loop's variable is none of the model's; a sum may begin at the zero that stood there
+        assert_eq!(loops(lines).replace("= 0 - ", "= -"), chain, "{lines}");
+    }
+    assert!(plain("0.9D0*x1; 1.5d-1*x2; 2e1*x3").contains("x1' = 0.9*x1\n  x2' = 0.15*x2\n  x3' = 20*x3"));
+    let python = "import sympy as sym\nx1, x2, k = sym.symbols('x1 x2 k')\nx = [[x1],[x2]]\np = [[k]]\nf = sym.zeros(2, 1)\nf[0] = -k*x1\nf[1, 0] = k*x1\nh = [x2]\n";
+    assert!(of_text("a.py", python).text.contains("x1' = -k*x1\n  x2' = k*x1"));
+}

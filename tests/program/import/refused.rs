@@ -98,10 +98,10 @@ fn what_cannot_be_read_is_named_with_its_place() {
         ),
         (
             "a.m",
-            "syms x1 k\nx = x1;\nx(2) = k;\n".to_owned(),
+            "syms x1 k\nx = x1;\nx(k) = 1;\n".to_owned(),
             "an element of something is assigned to: that is not read",
             3,
-            "x(2)",
+            "x(k)",
         ),
         (
             "a.m",
@@ -244,6 +244,33 @@ fn what_is_made_to_hurt_is_refused() {
         ("a.m", format!("syms x1\nx = [x1];\n{}f = x1; h = x1;\n", "x = [x; x];\n".repeat(60))),
         ("a.m", "syms x1\nx = x1;\nf = zeros(1e9, 1e9);\nh = x1;\n".to_owned()),
         ("a.m", format!("syms x1\nx = x1;\nf = {};\nh = x1;\n", deep("[", "]"))),
+        (
+            "a.m",
+            format!(
+                "syms x1\nx = x1;\nf(1) = x1;\n{}f(1) = f(1) + f(1);\n{}h = x1;\n",
+                "for i = 1:100\n".repeat(8),
+                "end\n".repeat(8)
+            ),
+        ),
+        (
+            "a.m",
+            format!(
+                "syms x1\nx = x1;\nf = x1;\n{}{}h = x1;\n",
+                "for i = 1:2\n".repeat(1000),
+                "end\n".repeat(1000)
+            ),
+        ),
+        (
+            "a.m",
+            format!(
+                "syms x1\nx = x1;\n{}a = 1;\n{}f = x1; h = x1;\n",
+                "for i = 1:19999\n".repeat(7),
+                "end\n".repeat(7)
+            ),
+        ),
+        ("a.m", "syms x1\nx = x1;\nf(1e18) = x1;\nh = x1;\n".to_owned()),
+        ("a.m", "syms x1\nx = x1;\nfor i = -9e18:9e18\nend\nf = x1; h = x1;\n".to_owned()),
+        ("a.m", "syms x1\nx = x1;\nfor i = 1:3\nf = x1; h = x1;\n".to_owned()),
         ("a.py", "import sympy as sym\nx = sym.symbols('x0:999999999999')\n".to_owned()),
         ("a.jl", format!("@ODEmodel(x'(t) = {}x(t), y(t) = x(t))", "2*(".repeat(1000))),
         ("a.xml", format!("<sbml level=\"3\">{}</sbml>", deep("<a>", "</a>"))),

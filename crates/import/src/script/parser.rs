@@ -427,8 +427,12 @@ impl<'a> Parser<'a> {
     }
 
     fn value(&self, token: &Token) -> Result<dashu::rational::RBig, Problem> {
-        let plain: String =
-            token.text.chars().filter(|c| *c != '_').map(|c| if c == 'f' { 'e' } else { c }).collect();
+        let plain: String = token
+            .text
+            .chars()
+            .filter(|c| *c != '_')
+            .map(|c| if matches!(c, 'f' | 'd' | 'D') { 'e' } else { c })
+            .collect();
         parse_decimal(&plain).ok_or_else(|| {
             Problem::new(&token.span, "a number that is too long", "this")
                 .help("decimals of at most 4096 digits, with an exponent of at most 4096")

@@ -257,13 +257,17 @@ impl Reading<'_> {
                 && matches!(next, Some('*' | '/' | '^' | '\'' | '\\'))
         };
         if behind.is_some_and(|next| {
-            !is_operator(next) && !next.is_some_and(|c| begins_name(c) && c != 'e' && c != 'E')
+            !is_operator(next) && !next.is_some_and(|c| begins_name(c) && !matches!(c, 'e' | 'E' | 'd' | 'D'))
         }) {
             self.at += 1;
             digits(self);
         }
         let rest = self.rest();
-        let marks = if self.dialect == Dialect::Julia { &['e', 'E', 'f'][..] } else { &['e', 'E'] };
+        let marks = match self.dialect {
+            Dialect::Julia => &['e', 'E', 'f'][..],
+            Dialect::Matlab => &['e', 'E', 'd', 'D'],
+            _ => &['e', 'E'],
+        };
         if let Some(exponent) = rest.strip_prefix(marks) {
             let unsigned = exponent.strip_prefix(['+', '-']).unwrap_or(exponent);
             if unsigned.starts_with(|c: char| c.is_ascii_digit()) {

@@ -250,16 +250,75 @@ impl<'b> ScriptWorkspace<'b> {
         meaning(syntax, &mut special)
     }
 
+    /// The whole number that an expression of numbers is, by what definitions stand for.
+    pub fn whole(&self, value: &ForeignExpr) -> Option<i64> {
+        match &value.kind {
+            ForeignKind::Number(number) if number.is_int() => i64::try_from(number.numerator().clone()).ok(),
+            ForeignKind::Name(name) => {
+                // what a definition is made of stands before it
+                let (_, value) = self.definitions.iter().rfind(|(defined, _)| defined == name)?;
+                self.whole(value)
+            }
+            ForeignKind::Sum(terms) => terms.iter().try_fold(0_i64, |sum, (subtracted, term)| {
+                let term = self.whole(term)?;
+                if *subtracted { sum.checked_sub(term) } else { sum.checked_add(term) }
+            }),
+            ForeignKind::Product(factors) => factors.iter().try_fold(1_i64, |product, (divided, factor)| {
+                let factor = self.whole(factor)?;
+                match divided {
+                    false => product.checked_mul(factor),
+                    true => (factor != 0 && product % factor == 0).then(|| product / factor),
+                }
+            }),
+            _ => None,
+        }
+    }
+
+    /// The number of something, if it is a whole one and not negative.
+    pub fn count(&mut self, syntax: &Syntax) -> Result<Option<usize>, Problem> {
+        let value = match self.value(syntax)? {
+            ScriptValue::One(one) => self.whole(&one),
+            _ => None,
+        };
+        Ok(value.and_then(|value| usize::try_from(value).ok()))
+    }
+
+    /// Assigns a value to an element of a vector, counted from 1, which grows where it has none of this number. A vector that is not there yet
+    /// is a row, as in MATLAB.
+    pub fn assign_element(&mut self, name: &str, at: usize, value: ForeignExpr) -> Result<(), Problem> {
+        let span = value.span.clone();
+        let (rows, mut entries) = match self.get(name) {
+            None | Some(Ok(ScriptValue::Else)) => (1, Vec::new()),
+            Some(Ok(ScriptValue::One(one))) => (1, vec![one]),
+            Some(Ok(ScriptValue::Many { rows, entries })) => (rows, entries),
+            Some(Err(why)) => return Err(why),
+        };
+        let is_column = rows == entries.len() && rows > 1;
+        if rows > 1 && !is_column && at > entries.len() || at == 0 || at > MOST_ENTRIES {
+            return Err(Problem::new(&span, format!("'{name}' has no element {at}"), "this")
+                .help("elements are counted from 1"));
+        }
+        if at > entries.len() {
+            entries.resize(at, ForeignExpr::integer(0, &span));
+        }
+        entries[at - 1] = value;
+        let rows = if is_column { entries.len() } else { rows.max(1) };
+        self.bind(name, ScriptValue::Many { rows, entries });
+        Ok(())
+    }
+
     fn call(&mut self, syntax: &Syntax) -> Valued {
         let span = &syntax.span;
         let Some((name, arguments)) = named_function(syntax) else { return self.function_of_time(syntax) };
+        // why something is not there is told where somebody needs it
+        if let Some(Err(why)) = self.get(name) {
+            return Err(why);
+        }
         // an element of a vector, in MATLAB
         if let Some(Ok(ScriptValue::Many { entries, .. })) = self.get(name)
             && let [index] = arguments
         {
-            let index = self.one(index)?;
-            let at =
-                index.as_number().and_then(|value| usize::try_from(value.clone().numerator().clone()).ok());
+            let at = self.count(index)?;
             let inside = at.and_then(|at| entries.get(at.checked_sub(1)?).cloned());
             return inside.map(ScriptValue::One).ok_or_else(|| {
                 Problem::new(span, format!("'{name}' has no such element"), "this")
@@ -274,13 +333,23 @@ impl<'b> ScriptWorkspace<'b> {
                 let value = self.value(inner)?;
                 Ok(if name == "transpose" { transposed(value) } else { value })
             }
+            ("length" | "numel", [list]) => {
+                let count = self.value(list)?.entries().map_or(1, |entries| entries.len());
+                Ok(ScriptValue::One(ForeignExpr::integer(count as i64, span)))
+            }
+            ("size", [list, way]) => {
+                let (value, way) = (self.value(list)?, self.count(way)?);
+                let (rows, all) = match &value {
+                    ScriptValue::Many { rows, entries } => (*rows, entries.len()),
+                    _ => (1, 1),
+                };
+                let size = if way == Some(1) { rows } else { all / rows.max(1) };
+                Ok(ScriptValue::One(ForeignExpr::integer(size as i64, span)))
+            }
             ("zeros" | "ones", sizes) if !sizes.is_empty() && sizes.len() <= 2 => {
                 let value = ForeignExpr::integer(i64::from(name == "ones"), span);
                 let mut size = |one: &Syntax| -> Result<usize, Problem> {
-                    let size = self.one(one)?;
-                    size.as_number()
-                        .filter(|value| value.is_int())
-                        .and_then(|value| usize::try_from(value.numerator().clone()).ok())
+                    self.count(one)?
                         .filter(|value| *value <= MOST_ENTRIES)
                         .ok_or_else(|| Problem::new(&one.span, "this is no size", "this"))
                 };

@@ -14,7 +14,7 @@ pub use checksum::Checksum;
 #[doc(hidden)]
 pub use packed::{PACKED, PackedFile, files_in, identity, is_file, is_folder, pack, packed_folders};
 #[doc(hidden)]
-pub use read::{ReadFailure, read_bytes, read_head, read_text};
+pub use read::{ReadFailure, read_bytes, read_head, read_old_text, read_text};
 #[doc(hidden)]
 pub use standard::{clear_terminal, look_at_standard_output, note, print, print_heard};
 #[doc(hidden)]

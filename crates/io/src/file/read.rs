@@ -95,6 +95,21 @@ pub fn read_head(path: &Path, count: u64) -> Result<Vec<u8>, ReadFailure> {
     Ok(head)
 }
 
+/// The text of a file that another program has written, perhaps before UTF-8: where it is none, each byte is a letter of ISO 8859-1, as
+/// MATLAB wrote on many systems. What has bytes that no text has is refused all the same.
+///
+/// # Errors
+/// As [`read_text`].
+pub fn read_old_text(path: &Path, most: u64) -> Result<String, ReadFailure> {
+    let why = match read_text(path, most) {
+        Err(why @ ReadFailure::NotText { .. }) => why,
+        found => return found,
+    };
+    let bytes = read_bytes(path, most)?;
+    let is_letter = |byte: &u8| !matches!(byte, 0..=8 | 11 | 14..=31 | 127..=159);
+    if bytes.iter().all(is_letter) { Ok(bytes.into_iter().map(char::from).collect()) } else { Err(why) }
+}
+
 /// The text of a file, if it is no more than `most` bytes of UTF-8. A byte-order mark in front is no part of it.
 ///
 /// # Errors
