@@ -8,6 +8,7 @@ use palmistry::file::note;
 use palmistry::foreign::shown_path;
 use palmistry::lab::{Access, LabError, LabOptions, LabServer, QuestionLimits, answer, open_in_browser};
 use serde_json::{Value, json};
+use std::ffi::OsString;
 use std::io::{Read, Write};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -55,6 +56,9 @@ pub(crate) struct Lab {
     answer: bool,
     #[command(flatten)]
     of_one: OfOne,
+    /// Do this command in the place of this process, and end with whoever has started it.
+    #[arg(long, hide = true, num_args = 1.., allow_hyphen_values = true, value_name = "COMMAND")]
+    then: Vec<OsString>,
 }
 
 /// What one question may take.
@@ -76,6 +80,9 @@ struct OfOne {
 
 impl Lab {
     pub fn run(self) -> miette::Result<Status> {
+        if !self.then.is_empty() {
+            return self.become_another();
+        }
         if let (true, Some(work)) = (self.answer, &self.of_one.work) {
             return self.of_one.answer(work);
         }
@@ -99,6 +106,22 @@ impl Lab {
         }
         server.run(&interrupted);
         Ok(Status::AsExpected)
+    }
+
+    /// Becomes another command of the program, which ends where its parent does.
+    fn become_another(&self) -> miette::Result<Status> {
+        self.of_one.limit();
+        let program = std::env::current_exe();
+        let failed = |why| Unusable::report(format!("the program cannot be started: {why}"), "");
+        let mut command = std::process::Command::new(program.map_err(failed)?);
+        command.args(&self.then);
+        #[cfg(unix)]
+        return Err(failed(std::os::unix::process::CommandExt::exec(&mut command)));
+        #[cfg(not(unix))]
+        match command.status().map_err(failed)?.code() {
+            Some(code) => std::process::exit(code),
+            None => Ok(Status::CutOff),
+        }
     }
 
     fn server(&self) -> miette::Result<(LabServer, Access)> {

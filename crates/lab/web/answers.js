@@ -103,10 +103,11 @@ export class Answers {
             this.table();
         } catch (error) {
             if (error.name === "AbortError" && signal.aborted) throw error;
-            this.tableOf = draft.base;
-            this.dimmed();
-            if (error.name === "AbortError") error = new Error("stopped; it is asked again when the text changes");
-            unknowns.replaceChildren(element("h2", {}, "Observable and identifiable"), refusal(error));
+            const isStopped = error.name === "AbortError";
+            this.tableOf = isStopped ? null : draft.base;
+            unknowns.classList.remove("old");
+            const again = isStopped ? element("button", { onclick: () => this.lab.read() }, "Go on") : null;
+            unknowns.replaceChildren(...[element("h2", {}, "Observable and identifiable"), refusal(isStopped ? new Error("stopped before the rank was known") : error), again].filter(Boolean));
         }
     }
 

@@ -30,29 +30,46 @@ export async function enter() {
 
 /** What answers at once, and waits for nothing. */
 const CHEAP = new Set(["draft", "hover", "complete", "format", "models", "model"]);
-/** A browser has six ways to a server: dear questions leave some free for those that are asked while one writes. */
-const DEAR_AT_ONCE = 3;
-let dear = 0;
-const waiting = [];
+/** Those that somebody asks by a button, and that may take long. */
+const BY_BUTTON = new Set(["values", "drops", "observe", "scene", "page", "import", "fit", "line"]);
 
-/** A turn for a dear question. */
-async function turn(signal) {
-    while (dear >= DEAR_AT_ONCE) {
-        await new Promise((go, stop) => {
-            const end = () => {
-                waiting.splice(waiting.indexOf(go), 1);
-                stop(signal.reason);
-            };
-            waiting.push(go);
-            signal?.addEventListener("abort", end, { once: true });
-        });
+/** So many questions of a kind are asked at once: a browser has six ways to a server, and two are for those that wait for nothing. */
+class Gate {
+    constructor(free) {
+        this.free = free;
+        this.waiting = [];
     }
-    dear += 1;
-    return () => {
-        dear -= 1;
-        waiting.shift()?.();
-    };
+
+    /** A turn: what is returned gives it back. */
+    async turn(signal, waits) {
+        signal?.throwIfAborted();
+        if (this.free > 0) this.free -= 1;
+        else {
+            waits();
+            await new Promise((go, stop) => {
+                const entry = () => {
+                    signal?.removeEventListener("abort", end);
+                    go();
+                };
+                const end = () => {
+                    this.waiting.splice(this.waiting.indexOf(entry), 1);
+                    stop(signal.reason);
+                };
+                this.waiting.push(entry);
+                signal?.addEventListener("abort", end, { once: true });
+            });
+        }
+        return () => {
+            // the turn goes on to whoever waits longest
+            const next = this.waiting.shift();
+            if (next) next();
+            else this.free += 1;
+        };
+    }
 }
+
+const byButton = new Gate(2);
+const live = new Gate(2);
 
 /** What the server says where it has no answer. */
 export class NoAnswer extends Error {
@@ -68,8 +85,9 @@ export class NoAnswer extends Error {
  */
 export async function ask(path, question, options = {}) {
     if (path !== "answer" || CHEAP.has(question.ask)) return asked(path, question, options);
-    options.signal?.throwIfAborted();
-    const done = await turn(options.signal);
+    const gate = BY_BUTTON.has(question.ask) || question.samples > 0 && question.ask === "rank" ? byButton : live;
+    const done = await gate.turn(options.signal, () => options.line?.({ kind: "waiting" }));
+    options.line?.({ kind: "begun" });
     try {
         return await asked(path, question, options);
     } finally {

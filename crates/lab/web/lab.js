@@ -70,7 +70,7 @@ class Lab {
         }
         try {
             const kept = JSON.parse(sessionStorage.getItem(KEPT));
-            if (typeof kept?.text === "string") return kept;
+            if (typeof kept?.text === "string") return { ...kept, was: kept.was === true ? kept.text : kept.was };
         } catch { /* a browser that keeps nothing */ }
         const { file } = this.session;
         if (file) {
@@ -90,20 +90,39 @@ class Lab {
 
     /** Puts another text here; `file` is where it would stand, and `was` what stands there now. */
     put(text, file = "", was = null) {
-        Object.assign(this, { file, was, lineEnd: /\r\n/.test(text) ? "\r\n" : "\n" });
+        withoutLink();
+        const isLost = this.placed && this.text.text !== this.placed.text;
+        const before = isLost ? { text: this.written(), file: this.file, was: this.was } : null;
+        file = nameOf(file);
+        Object.assign(this, { file, was, lineEnd: lineEndOf(text) });
         for (const name of ["map", "motion", "observe"]) this.panels[name].forget();
         by("file-name").textContent = file;
         this.panels.answers.clear();
         this.text.set(text);
+        this.placed = { text: this.text.text };
         by("notice").hidden = true;
+        // what was written and not saved can be had back
+        if (isLost) this.notice(new Error("The text that was here was not saved."), element("button", { onclick: () => this.put(before.text, before.file, before.was) }, "Back to it"));
         this.changed(0);
     }
 
-    changed(wait = QUIET) {
+    /** Keeps the text for a reload of this page. An older one is not kept in its place. */
+    keep() {
+        const { file, was } = this;
+        const text = this.written();
         try {
-            const { text } = this.text;
-            if (text.length <= LONGEST) sessionStorage.setItem(KEPT, JSON.stringify({ text: text.replaceAll("\n", this.lineEnd), file: this.file, was: this.was }));
+            sessionStorage.removeItem(KEPT);
+            if (text.length <= LONGEST) sessionStorage.setItem(KEPT, JSON.stringify({ text, file, was: was === text ? true : was }));
         } catch { /* it is full, or keeps nothing */ }
+    }
+
+    /** The text with the ends of lines that it came with. */
+    written() {
+        return this.text.text.replaceAll("\n", this.lineEnd);
+    }
+
+    changed(wait = QUIET) {
+        this.keep();
         // a link is of the text that it was made of
         if (wait > 0) withoutLink();
         // what was asked of another text is no answer to this one
@@ -124,6 +143,7 @@ class Lab {
             if (signal.aborted) return;
             draft.question = question;
             this.draft = draft;
+            by("answers").classList.remove("old");
             this.text.problems(draft.problems);
             const count = draft.problems.length;
             by("state").textContent = count ? `${count} ${count === 1 ? "mistake" : "mistakes"}: line ${draft.problems[0].range.start.line + 1}, ${draft.problems[0].message.split("\n")[0]}` : "no mistakes";
@@ -140,6 +160,9 @@ class Lab {
             if (error.name === "AbortError") return;
             by("state").textContent = error.message;
             by("state").className = "bad";
+            // what is known is of another text
+            this.text.verdicts([]);
+            for (const name of ["answers", "map", "motion", "observe"]) by(name).classList.add("old");
         }
     }
 
@@ -163,6 +186,10 @@ class Lab {
         const timer = setTimeout(() => { this.jobs.add(job); this.jobsShown(); }, wait);
         try {
             return await work(abort.signal, line => {
+                if (line.kind === "waiting" || line.kind === "begun") {
+                    job.waits = line.kind === "waiting";
+                    this.jobsShown();
+                }
                 if (line.kind === "progress") {
                     job.done = line.of > 0 ? line.done / line.of : null;
                     this.jobsShown();
@@ -180,7 +207,7 @@ class Lab {
         const jobs = [...this.jobs];
         by("running").hidden = jobs.length === 0;
         if (jobs.length === 0) return;
-        by("running-what").textContent = jobs.map(job => job.what).join("; ");
+        by("running-what").textContent = jobs.map(job => (job.waits ? `${job.what} (waits for another)` : job.what)).join("; ");
         const done = jobs[jobs.length - 1].done;
         if (done == null) by("progress").removeAttribute("value");
         else by("progress").value = done;
@@ -271,15 +298,24 @@ class Lab {
             file = prompt("Save as (a path within the folder, ending with .proof)", file.split("/").pop() || "system.proof");
             if (!file) return;
         }
+        if (this.isSaving) return;
+        this.isSaving = true;
+        const { placed } = this;
         try {
-            const text = this.text.text.replaceAll("\n", this.lineEnd);
+            const text = this.written();
             await ask("save", { file, text, was: file === this.file ? this.was : null });
+            // another text may have been opened meanwhile
+            if (placed !== this.placed) return;
             [this.file, this.was] = [file, text];
+            this.placed = { text: this.text.text };
+            this.keep();
             by("notice").hidden = true;
             by("file-name").textContent = file;
             by("state").textContent = `saved: ${file}`;
         } catch (error) {
             this.notice(error, element("button", { onclick: () => this.save(true) }, "Save as..."));
+        } finally {
+            this.isSaving = false;
         }
     }
 
@@ -311,7 +347,7 @@ class Lab {
     async exported(kind) {
         const name = (this.file.split("/").pop() || "system.proof").replace(/\.proof$/, "");
         try {
-            if (kind === "proof") download(`${name}.proof`, "text/plain", this.text.text);
+            if (kind === "proof") download(`${name}.proof`, "text/plain", this.written());
             if (kind === "notebook") download(`${name}.ipynb`, "application/x-ipynb+json", notebook(this.text.text, this.draft?.title ?? name));
             if (kind === "page") {
                 const { page } = await this.run("the page", signal => ask("answer", { ask: "page", ...this.question() }, { signal }));
@@ -341,6 +377,18 @@ function notebook(text, title) {
         cell("code", "system.prove()"), cell("code", "system.rank()"),
     ];
     return JSON.stringify({ cells, metadata: { kernelspec: { display_name: "Python 3", language: "python", name: "python3" } }, nbformat: 4, nbformat_minor: 5 }, null, 1);
+}
+
+/** The end that most lines of a text have. */
+function lineEndOf(text) {
+    const [all, both] = [text.match(/\n/g)?.length ?? 0, text.match(/\r\n/g)?.length ?? 0];
+    return 2 * both > all ? "\r\n" : "\n";
+}
+
+/** A name under which a text may stand; none where there is no such. */
+function nameOf(file) {
+    const name = file.replace(/\.proof$/i, ".proof");
+    return /^(papers:)?([^/\\\p{Cc}]+\/)*[^/\\\p{Cc}]+\.proof$/u.test(name) && !name.split("/").some(part => [".", ".."].includes(part)) ? name : "";
 }
 
 async function through(stream, bytes, most) {

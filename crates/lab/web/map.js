@@ -35,6 +35,7 @@ export class Map_ {
             element("p", { class: "hint" }, "How well the worst unknown, or one, is observable: its standard deviation over its prior one, where each Lie derivative is measured up to its own range (computed, not certified). Light is well; dark is badly; green is unobservable or not to be told from it; white is a pole. Where the pointer rests the rank is decided, by exact arithmetic at that very state."),
             this.settings, this.sliders, this.failure,
             element("div", { class: "axes" }, this.up, element("div", { class: "picture" }, this.canvas), this.across),
+            element("div", { class: "scale", "aria-hidden": "true" }, ["1", "10", "100", "1000 and more", "infinite"].map(text => element("span", {}, text))),
             this.read, element("h2", {}, "Along a line"),
             element("p", { class: "hint" }, "The same towards where an expression is zero, such as a singular set, or towards infinity; from a distance of one down to 1e-12."),
             this.lineAsked, this.line);
@@ -62,9 +63,9 @@ export class Map_ {
         // what was drawn of another system is no picture of this one
         this.abort?.abort();
         this.deciding?.abort();
-        this.grid = this.names = null;
-        this.canvas.getContext("2d").clearRect(0, 0, this.canvas.width, this.canvas.height);
-        this.read.textContent = "";
+        this.names = null;
+        this.drawing?.abort();
+        this.blank();
         const names = draft.symbols.map(symbol => symbol.name);
         const unknown = draft.symbols.filter(symbol => symbol.unknown).map(symbol => symbol.name);
         const states = draft.symbols.filter(symbol => symbol.kind === "state").map(symbol => symbol.name);
@@ -150,6 +151,12 @@ export class Map_ {
         const abort = this.abort = new AbortController();
         const [x, y] = [this.axis("x"), this.axis("y")];
         this.failure.replaceChildren();
+        this.deciding?.abort();
+        clearTimeout(this.resting);
+        // a picture stays only while its axes do
+        const frame = JSON.stringify([x, y, this.of.value]);
+        if (frame !== this.frame) this.blank();
+        this.frame = frame;
         if (x[0] === y[0]) return this.failure.replaceChildren(element("p", { class: "hint" }, "Choose two different coordinates."));
         const question = { ask: "map", ...this.draft.question, x, y, at: this.at(), of: this.of.value || null, cells: CELLS };
         const ends = axis => [element("span", {}, shown(axis[1])), element("span", {}, axis[0]), element("span", {}, shown(axis[2]))];
@@ -160,9 +167,19 @@ export class Map_ {
             this.names = found.names;
             this.canvas.dataset.done = true;
             this.told();
+            if (this.place) this.rests();
         } catch (error) {
-            if (error.name !== "AbortError") this.failure.replaceChildren(refusal(error));
+            if (error.name === "AbortError") return;
+            this.blank();
+            this.failure.replaceChildren(refusal(error));
         }
+    }
+
+    /** Nothing is drawn, and nothing is read. */
+    blank() {
+        this.grid = null;
+        this.canvas.getContext("2d").clearRect(0, 0, this.canvas.width, this.canvas.height);
+        this.read.textContent = "";
     }
 
     paint({ width, values, worst }) {
@@ -258,8 +275,10 @@ export class Map_ {
             at[name] ??= (low + high) / 2;
         }
         delete at[moving];
+        this.drawing?.abort();
+        const drawing = this.drawing = new AbortController();
         try {
-            const found = await this.lab.run("the line", signal => ask("answer", { ask: "line", ...this.draft.question, moving, zero: zero || null, at }, { signal }));
+            const found = await this.lab.run("the line", (signal, line) => ask("answer", { ask: "line", ...this.draft.question, moving, zero: zero || null, at }, { signal, line }), drawing);
             const curves = found.names.map((name, place) => ({
                 name, color: COLORS[place % COLORS.length], x: found.distance, y: found.values.map(all => (all && all[place] > 0 ? all[place] : NaN)), dash: place >= COLORS.length ? "5 3" : null,
             }));
@@ -268,7 +287,7 @@ export class Map_ {
                 chart({ curves, x: zero ? `distance of ${moving} from where ${zero} is zero` : `one over ${moving}`, y: "standard deviation / prior", log: [true, true], label: "Standard deviations along the line" }),
                 element("p", { class: "hint" }, missing.length ? `Where a curve of ${missing.join(", ")} ends it is infinite or not to be told.` : ""));
         } catch (error) {
-            this.line.replaceChildren(error.name === "AbortError" ? "stopped" : refusal(error));
+            if (drawing === this.drawing) this.line.replaceChildren(error.name === "AbortError" ? "stopped" : refusal(error));
         }
     }
 }

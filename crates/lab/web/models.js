@@ -36,9 +36,12 @@ export class Models {
             element("div", { class: "cards" }, models.map(card)), scenes.length ? element("h2", {}, "Scenes") : null, element("div", { class: "cards" }, scenes.map(scene)));
     }
 
+    /** Opens what was chosen last, however long it takes. */
     async open(file) {
+        this.opening = file;
         try {
             const { text } = await ask("answer", { ask: "model", model: file });
+            if (this.opening !== file) return;
             this.lab.put(text, file);
             this.lab.tab("answers");
         } catch (error) {
@@ -49,11 +52,13 @@ export class Models {
     async play(scene) {
         this.scene.replaceChildren(element("h2", {}, scene.title ?? scene.file), element("p", { class: "hint", role: "status" }, "being observed ..."));
         this.scene.scrollIntoView();
+        this.playing?.abort();
+        const playing = this.playing = new AbortController();
         try {
-            const { page, motion, observed, scene: text } = await this.lab.run(scene.title ?? scene.file, signal => ask("answer", { ask: "scene", scene: scene.file }, { signal }));
+            const { page, motion, observed, scene: text } = await this.lab.run(scene.title ?? scene.file, (signal, line) => ask("answer", { ask: "scene", scene: scene.file }, { signal, line }), playing);
             this.scene.replaceChildren(element("h2", {}, scene.title ?? scene.file), motion ? movingScene(motion, observed.shape, text) ?? "" : "", element("iframe", { src: `/page/${page}`, title: scene.title ?? scene.file, sandbox: "allow-scripts" }));
         } catch (error) {
-            this.scene.replaceChildren(error.name === "AbortError" ? element("p", {}, "stopped") : refusal(error));
+            if (playing === this.playing) this.scene.replaceChildren(error.name === "AbortError" ? element("p", {}, "stopped") : refusal(error));
         }
     }
 
@@ -68,8 +73,10 @@ export class Models {
     }
 
     async read(file) {
+        this.opening = file;
         try {
             const { text } = await ask("read", { file });
+            if (this.opening !== file) return;
             this.lab.put(text, file, text);
             this.lab.tab("answers");
         } catch (error) {

@@ -165,7 +165,7 @@ export class Motion {
         if (found.second) {
             const first = this.start();
             const start = Object.entries(found.second.start).filter(([name, value]) => Math.abs(value - first[name]) > 1e-12);
-            parts.push(`Second start: ${start.map(([name, value]) => `${name} = ${shown(value)}`).join(", ")}. The outputs of both differ by ${found.second.difference.toExponential(1)} of their size.`);
+            parts.push(`Second start: ${start.map(([name, value]) => `${name} = ${shown(value)}`).join(", ")}. The outputs of both differ by ${found.second.difference.toExponential(1)} of their size${found.second.ended ? `, as far as both go, until ${shown(found.second.compared_until)}: the second ends early, ${found.second.ended}` : ""}.`);
         }
         this.told.textContent = parts.join(" ");
         this.pictures.replaceChildren(

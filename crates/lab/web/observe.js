@@ -29,7 +29,7 @@ export class Observe {
             return element("label", {}, label, slider, told);
         };
         this.source = element("div", { class: "row" });
-        this.file = element("input", { type: "file", accept: ".csv,.txt,.tsv", "aria-label": "A recording as CSV", onchange: () => this.taken(this.file.files[0]) });
+        this.file = element("input", { type: "file", accept: ".csv,.txt,.tsv", "aria-label": "A recording as CSV", onchange: () => this.file.files[0] && this.taken(this.file.files[0]) });
         this.simulated = element("div", { class: "sliders" }, number("noise", -2, { min: -6, max: 0, step: 0.1, log: true }, "noise"),
             number("duration", 10, { min: 1, max: 100, step: 1 }, "duration"), number("samples", 200, { min: 10, max: 2000, step: 10 }, "samples"));
         this.windows = element("div", { class: "sliders" }, number("window", 100, { min: 5, max: 100, step: 5 }, "window, %"), number("seed", 1, { min: 1, max: 50, step: 1 }, "seed"));
@@ -53,7 +53,9 @@ export class Observe {
             event.preventDefault();
             event.stopPropagation();
             panel.classList.remove("dropping");
-            this.taken(event.dataTransfer.files[0]);
+            const files = [...event.dataTransfer.files];
+            if (files.length === 1 && /\.(csv|tsv|txt)$/i.test(files[0].name)) this.taken(files[0]);
+            else this.lab.take(files);
         });
     }
 

@@ -54,6 +54,13 @@ pub(super) fn completions(library: &Library, source: &Rc<Source>, at: usize) -> 
         offer(&mut vocabulary::dimensions(), UNIT, "a quantity or a unit");
         return items(found);
     }
+    if names_a_claim(line) && !line.contains(':') {
+        let claims = source.outline.declarations.iter().take(MOST_NAMES);
+        for one in claims.filter(|one| matches!(one.kind, DeclarationKind::Claim(_))) {
+            found.insert(one.name.clone(), (VARIABLE, "a claim".to_owned()));
+        }
+        return items(found);
+    }
     offer(&mut vocabulary::functions(), FUNCTION, "a function");
     offer(&mut vocabulary::CONSTANTS.iter().copied(), CONSTANT, "a constant");
     offer(&mut vocabulary::SPECIAL.iter().copied(), KEYWORD, "a word of the language");
@@ -72,10 +79,16 @@ fn declares_a_name(line: &str) -> bool {
             !rest.rsplit(',').next().unwrap_or_default().contains([':', '=', '('])
         }
         "let" | "use" => !rest.contains('='),
-        "claim" => !rest.contains(':'),
-        "drift" | "input" | "field" | "system" => true,
+        "claim" => !rest.contains(':') && !names_a_claim(rest),
+        "drift" | "input" | "field" => !rest.contains(['\'', '+', '=']),
+        "system" => true,
         _ => false,
     }
+}
+
+/// Whether the name of another claim is to follow.
+fn names_a_claim(line: &str) -> bool {
+    line.split_whitespace().any(|word| ["restates", "follows"].contains(&word))
 }
 
 /// Whether a line declares names, whose units stand behind a colon.

@@ -409,6 +409,21 @@ fn nothing_is_lost_between_files_and_reloads() {
     browser.click("#save");
     browser.until("document.getElementById('state').textContent === 'saved: other.proof'");
     assert_eq!(read("other.proof"), "system \"mine\"\r\nstate y\r\n");
+    // what was saved can be saved again after a reload
+    browser.send("Page.reload", serde_json::json!({}));
+    browser.until(&format!("document.querySelector('.cm-content')?.innerText.includes('mine') && {TOLD}"));
+    browser.write("system \"mine\"\nstate y # again\n");
+    browser.click("#save");
+    browser.until("document.getElementById('state').textContent === 'saved: other.proof'");
+    assert_eq!(read("other.proof"), "system \"mine\"\r\nstate y # again\r\n");
+    // what was not saved can be had back
+    browser.write("system \"precious\"\nstate y\n");
+    browser.click("#new");
+    browser.until("document.getElementById('notice').textContent.includes('was not saved')");
+    browser.click("#notice button");
+    browser.until("document.querySelector('.cm-content').innerText.includes('precious')");
+    browser.write("system \"mine\"\nstate y\n");
+    browser.value("window.prompt = () => 'third.proof'");
     // somebody else writes meanwhile
     write(&folder, "other.proof", &other);
     browser.click("#save");
@@ -476,6 +491,14 @@ fn answers_are_to_the_text_that_stands_there() {
     browser.key("Enter", 13, 0);
     browser.type_text("output x");
     assert!(browser.text("document.querySelector('.cm-content').innerText").starts_with("state x, v\n"));
+    // questions that are taken back leave their turns to others, whatever the order
+    let turns = "import('/ask.js').then(async ({ ask }) => { \
+        const slow = () => { const abort = new AbortController(); const done = ask('answer', { ask: 'claims', text: '', only: [] }, { signal: abort.signal }).catch(error => error.name); return { abort, done }; }; \
+        window.slow = ask => ask === 'claims'; const all = [slow(), slow(), slow(), slow(), slow()]; all[0].abort.abort(); await all[0].done; await new Promise(go => setTimeout(go, 50)); \
+        all[2].abort.abort(); all[3].abort.abort(); all[1].abort.abort(); window.slow = () => false; const last = await Promise.race([all[4].done, new Promise(go => setTimeout(go, 10000, 'lost'))]); \
+        return last.message ?? last.kind ?? last; })";
+    let found = browser.text(turns);
+    assert_ne!(found, "lost");
     // an address that a stranger has made up
     browser.page();
     browser.go(&format!("http://{}/?token=evil", lab.host));

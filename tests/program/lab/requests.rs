@@ -209,6 +209,44 @@ fn a_question_ends_with_its_client() {
     assert!(left.stdout.is_empty());
 }
 
+/// What a question has started ends with the lab, even where that is killed.
+#[cfg(target_os = "linux")]
+#[test]
+fn nothing_outlives_a_lab_that_is_killed() {
+    let mut lab = Lab::open();
+    // a name by which the processes of this test are known among all
+    let text = "system \"outliving\"\nstate x, v\nparam k = 3\ndrift f\n  x' = v\n  v' = -k*sin(x)\noutput x\nsample x in [-1, 1] v in [-1, 1]\n";
+    let question = json!({
+        "ask": "observe", "text": text, "estimate": ["v", "k"], "window": 100, "noise": 1e-3,
+        "from": { "motion": { "start": { "x": 0.5, "v": 0.0, "k": 3.0 }, "inputs": {}, "duration": 1e5, "samples": 1_000_000 } },
+    });
+    let mut stream = TcpStream::connect(&lab.host).expect("it listens");
+    stream.write_all(&lab.request("answer", &question.to_string())).expect("it reads");
+    let descendants = |of: u32| -> Vec<u32> {
+        let children = |of: u32| -> Vec<u32> {
+            let found = Command::new("ps").args(["-o", "pid=", "--ppid", &of.to_string()]).output();
+            String::from_utf8_lossy(&found.expect("there is a 'ps'").stdout)
+                .split_whitespace()
+                .filter_map(|id| id.parse().ok())
+                .collect()
+        };
+        let first = children(of);
+        let second: Vec<u32> = first.iter().flat_map(|id| children(*id)).collect();
+        first.into_iter().chain(second).collect()
+    };
+    let id = lab.child.id();
+    until("an observer works", || descendants(id).len() >= 2);
+    let all = descendants(id);
+    lab.child.kill().expect("it can be killed");
+    lab.child.wait().expect("it ends");
+    let is_there = |id: &u32| {
+        let state = std::fs::read_to_string(format!("/proc/{id}/stat")).unwrap_or_default();
+        state.rsplit(')').next().is_some_and(|rest| !rest.trim_start().starts_with('Z'))
+            && state.contains("palmistry")
+    };
+    until("all have ended", || !all.iter().any(is_there));
+}
+
 /// What takes more memory than it may ends alone, and without an answer.
 #[cfg(target_os = "linux")]
 #[test]

@@ -56,6 +56,8 @@ pub(super) fn motion(place: &Place<'_>, asked: &MotionAsked) -> Result<Value, Re
         answer["second"] = told(&second);
         answer["second"]["start"] = json!(start);
         answer["second"]["difference"] = json!(difference(&first, &second));
+        answer["second"]["compared_until"] =
+            json!(first.times[first.times.len().min(second.times.len()) - 1]);
     }
     Ok(answer)
 }

@@ -2,7 +2,7 @@
 
 use super::Refused;
 use palmistry_io::file::{PACKED, identity};
-use palmistry_io::foreign::shown_path;
+use palmistry_io::foreign::shown;
 use palmistry_lang::{Outline, System, load, with_plain_line_ends};
 use palmistry_lsp::Draft;
 use std::collections::BTreeMap;
@@ -94,7 +94,7 @@ impl Bounds {
         for name in imported.chain(referred) {
             let path = file.parent().unwrap_or(Path::new("")).join(name);
             // what is not there is told by the reader, at its place
-            let Some(within) = self.within(&path)? else { continue };
+            let Some(within) = self.within(&path, name)? else { continue };
             if named.contains_key(&within) {
                 continue;
             }
@@ -107,8 +107,8 @@ impl Bounds {
     }
 
     /// The path of a file within the folder, or among the papers; nothing where there is no such file.
-    fn within(&self, path: &Path) -> Result<Option<PathBuf>, Refused> {
-        let out = || Refused::new(format!("{} lies outside of what may be read here", shown_path(path)));
+    fn within(&self, path: &Path, name: &str) -> Result<Option<PathBuf>, Refused> {
+        let out = || Refused::new(format!("'{}' lies outside of what may be read here", shown(name)));
         if is_packed(path) {
             let found = identity(path).ok();
             return Ok(found.map(|path| PathBuf::from(path.to_string_lossy().replacen(PACKED, "", 1))));

@@ -176,7 +176,9 @@ struct Ran {
 fn command(arguments: &[&str], within: &Path) -> Result<Ran, Refused> {
     let failed = |why: std::io::Error| Refused::new(format!("the program cannot be started: {why}"));
     let program = std::env::current_exe().map_err(failed)?;
+    // what is started here does not outlive the server either
     let output = Command::new(program)
+        .args(["lab", "--then"])
         .args(arguments)
         .current_dir(within)
         .env("COLUMNS", "80")

@@ -5,8 +5,9 @@ use palmistry_io::file::write_whole;
 use serde_json::{Value, json};
 use std::path::{Component, Path, PathBuf};
 
-/// More files are not listed.
+/// More files are not listed, nor more entries of folders looked at.
 const MOST_FILES: usize = 2000;
+const MOST_ENTRIES: usize = 50_000;
 /// Folders in folders beyond this are not looked into.
 const DEEPEST: usize = 8;
 /// Longer files are not read.
@@ -34,12 +35,12 @@ fn text<'v>(asked: &'v Value, key: &str) -> &'v str {
 /// The proof files, by their paths within the folder.
 fn list(folder: &Path) -> Vec<String> {
     let mut found = Vec::new();
-    look(folder, Path::new(""), DEEPEST, &mut found);
+    look(folder, Path::new(""), DEEPEST, (&mut found, &mut 0));
     found.sort();
     found
 }
 
-fn look(folder: &Path, within: &Path, deep: usize, found: &mut Vec<String>) {
+fn look(folder: &Path, within: &Path, deep: usize, (found, looked): (&mut Vec<String>, &mut usize)) {
     let Ok(entries) = std::fs::read_dir(folder.join(within)) else { return };
     for entry in entries.flatten() {
         let name = entry.file_name();
@@ -48,11 +49,12 @@ fn look(folder: &Path, within: &Path, deep: usize, found: &mut Vec<String>) {
             continue;
         };
         let path = within.join(&name);
-        if found.len() >= MOST_FILES {
+        *looked += 1;
+        if found.len() >= MOST_FILES || *looked > MOST_ENTRIES {
             return;
         }
         if kind.is_dir() && deep > 0 {
-            look(folder, &path, deep - 1, found);
+            look(folder, &path, deep - 1, (found, looked));
         } else if kind.is_file()
             && is_proof(&path)
             && let Some(path) = path.to_str()

@@ -14,6 +14,7 @@ use route::Router;
 use std::collections::HashMap;
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
+use std::pin::pin;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use tokio::net::TcpListener;
@@ -87,13 +88,23 @@ impl LabServer {
         let (folder, file) = match folder {
             None => (None, None),
             Some(given) => {
-                let found = given.canonicalize().and_then(|real| match real.is_file() {
-                    false => std::fs::read_dir(&real).map(|_| (Some(real), None)),
-                    true => {
-                        let name = real.file_name().map(|name| name.to_string_lossy().into_owned());
-                        Ok((real.parent().map(Path::to_owned), name))
+                let of_file = || {
+                    // a link names what lies elsewhere
+                    let is_proof = given.extension().is_some_and(|end| end == "proof");
+                    if !is_proof || given.is_symlink() {
+                        let why = "it is no folder, and no file whose name ends with .proof";
+                        return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, why));
                     }
-                });
+                    let name = given.file_name().map(|name| name.to_string_lossy().into_owned());
+                    let parent = given.parent().filter(|parent| !parent.as_os_str().is_empty());
+                    Ok((Some(parent.unwrap_or(Path::new(".")).canonicalize()?), name))
+                };
+                let found = match given.is_file() {
+                    true => of_file(),
+                    false => given
+                        .canonicalize()
+                        .and_then(|real| std::fs::read_dir(&real).map(|_| (Some(real), None))),
+                };
                 found.map_err(|why| LabError::Folder(given, why))?
             }
         };
@@ -139,10 +150,13 @@ impl LabServer {
                     });
                     let mut server = http1::Builder::new();
                     server.timer(TokioTimer::new()).header_read_timeout(HEAD).max_buf_size(64 << 10);
-                    // a connection that breaks is the other end's; one that takes nothing does not stay
-                    let _ =
-                        tokio::time::timeout(longest, server.serve_connection(TokioIo::new(stream), service))
-                            .await;
+                    let mut connection = pin!(server.serve_connection(TokioIo::new(stream), service));
+                    // one that is old ends with its answer, and one that takes none of it does not stay
+                    let is_old = tokio::time::timeout(longest, connection.as_mut()).await.is_err();
+                    if is_old {
+                        connection.as_mut().graceful_shutdown();
+                        let _ = tokio::time::timeout(longest, connection).await;
+                    }
                     drop((permit, one));
                 });
             }

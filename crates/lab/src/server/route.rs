@@ -50,9 +50,11 @@ impl Router {
         self.workers.limits.connections
     }
 
-    /// How long a connection may last: a dear question, and as long as it takes to send its answer.
+    /// How long an answer may take: as long as all questions before it, and as long as it takes to send it.
     pub fn longest(&self) -> Duration {
-        self.workers.limits.dear + 10 * SENDING
+        let QuestionLimits { dear, places, at_once, .. } = self.workers.limits;
+        let before = places[0].div_ceil(at_once[0].max(1)).max(places[1].div_ceil(at_once[1].max(1)));
+        dear * u32::try_from(before + 1).unwrap_or(u32::MAX) + 10 * SENDING
     }
 
     pub async fn respond(&self, request: Request<Incoming>, client: IpAddr) -> Answer {
