@@ -204,11 +204,11 @@ impl OfOne {
         })?;
         let out = Mutex::new(std::io::stdout());
         let tell = |line: Value| {
-            if let Ok(mut out) = out.lock() {
-                if writeln!(out, "{line}").and_then(|()| out.flush()).is_err() {
-                    // nobody reads any more
-                    std::process::exit(1);
-                }
+            if let Ok(mut out) = out.lock()
+                && writeln!(out, "{line}").and_then(|()| out.flush()).is_err()
+            {
+                // nobody reads any more
+                std::process::exit(1);
             }
         };
         let (work, within) = (work.to_owned(), self.within.clone());
