@@ -74,7 +74,7 @@ COMMANDS = {
 }
 
 #: What a Python program has no use for.
-LEFT_OUT = {"lsp": "an editor starts it", "completions": "for shells", "man": "for the command line", "help": "for the command line"}
+LEFT_OUT = {"lab": "a page in the browser", "lsp": "an editor starts it", "completions": "for shells", "man": "for the command line", "help": "for the command line"}
 
 
 def found(name):

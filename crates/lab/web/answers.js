@@ -29,6 +29,8 @@ export class Answers {
     }
 
     clear() {
+        clearTimeout(this.soon);
+        this.soon = null;
         this.base = null;
         this.unknowns = null;
         this.tableOf = null;

@@ -2,7 +2,7 @@
 
 import { ask, element, enter } from "/ask.js";
 import { Answers } from "/answers.js";
-import { Map_ } from "/map.js";
+import { MapPanel } from "/map.js";
 import { Models } from "/models.js";
 import { Motion } from "/motion.js";
 import { Observe } from "/observe.js";
@@ -46,20 +46,22 @@ class Lab {
             words: this.session.words, question: () => this.question(), changed: () => this.changed(), open: id => this.panels.answers.show(id),
         });
         this.panels = {
-            answers: new Answers(by("answers"), this), map: new Map_(by("map"), this), motion: new Motion(by("motion"), this),
+            answers: new Answers(by("answers"), this), map: new MapPanel(by("map"), this), motion: new Motion(by("motion"), this),
             observe: new Observe(by("observe"), this), models: new Models(by("models"), this),
         };
         this.tabs();
         this.buttons();
         by("save").hidden = !this.session.folder;
-        const { text, file, was } = await this.first();
+        const { text, file, was, isRestored } = await this.first();
         this.put(text, file, was);
+        // what was not saved before a reload is not saved now
+        if (isRestored && text !== EXAMPLE) this.placed = { text: was?.replaceAll("\r\n", "\n") };
         if (this.failure) this.notice(this.failure);
         this.text.view.focus();
         document.body.dataset.ready = "true";
     }
 
-    /** The text of the link; else the file that the lab was started with; else the text that was here last; else an example. */
+    /** The text of the link; else the one that was here before a reload; else the file that the lab was started with; else an example. */
     async first() {
         try {
             const found = await fromLink(location.hash);
@@ -70,7 +72,7 @@ class Lab {
         }
         try {
             const kept = JSON.parse(sessionStorage.getItem(KEPT));
-            if (typeof kept?.text === "string") return { ...kept, was: kept.was === true ? kept.text : kept.was };
+            if (typeof kept?.text === "string") return { ...kept, was: kept.was === true ? kept.text : kept.was, isRestored: true };
         } catch { /* a browser that keeps nothing */ }
         const { file } = this.session;
         if (file) {

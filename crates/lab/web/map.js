@@ -19,7 +19,7 @@ const INFINITE = [0, 140, 110];
 /** Deviations over the prior one from 1 to 1000 have tones of their own. */
 const MOST = 3;
 
-export class Map_ {
+export class MapPanel {
     constructor(panel, lab) {
         Object.assign(this, { lab, panel, values: new Values(), view: new Map() });
         this.settings = element("div", { class: "row" });
@@ -49,7 +49,7 @@ export class Map_ {
     forget() {
         this.values.clear();
         this.x = this.y = this.of = null;
-        this.key_ = null;
+        this.drawnOf = null;
     }
 
     /** Takes in the symbols of a text; what is chosen stays, where it is still there. */
@@ -57,8 +57,8 @@ export class Map_ {
         this.draft = draft;
         if (!draft.sound || !draft.symbols) return;
         const key = JSON.stringify([draft.base, draft.maps]);
-        if (key === this.key_) return;
-        this.key_ = key;
+        if (key === this.drawnOf) return;
+        this.drawnOf = key;
         this.isNew = true;
         // what was drawn of another system is no picture of this one
         this.abort?.abort();
