@@ -107,7 +107,13 @@ pub fn read_old_text(path: &Path, most: u64) -> Result<String, ReadFailure> {
     };
     let bytes = read_bytes(path, most)?;
     let is_letter = |byte: &u8| !matches!(byte, 0..=8 | 11 | 14..=31 | 127..=159);
-    if bytes.iter().all(is_letter) { Ok(bytes.into_iter().map(char::from).collect()) } else { Err(why) }
+    // the marks of UTF-16 are two letters there, and no text begins with them
+    let is_marked = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
+    if !is_marked && bytes.iter().all(is_letter) {
+        Ok(bytes.into_iter().map(char::from).collect())
+    } else {
+        Err(why)
+    }
 }
 
 /// The text of a file, if it is no more than `most` bytes of UTF-8. A byte-order mark in front is no part of it.
@@ -123,4 +129,25 @@ pub fn read_text(path: &Path, most: u64) -> Result<String, ReadFailure> {
         Some(rest) => rest.to_owned(),
         None => text,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: UTF-8 stays what it is, a letter of ISO 8859-1 is one, and what is no text is none.
+    #[test]
+    fn old_texts_are_read_letter_by_letter() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.m");
+        let read = |bytes: &[u8]| {
+            std::fs::write(&path, bytes).expect("written");
+            read_old_text(&path, 1000).ok()
+        };
+        assert_eq!(read("% mod\u{e8}le \u{3b1}\n".as_bytes()).as_deref(), Some("% mod\u{e8}le \u{3b1}\n"));
+        assert_eq!(read(b"% mod\xe8le\r\n\tx = 1;").as_deref(), Some("% mod\u{e8}le\r\n\tx = 1;"));
+        for bytes in [&b"\xff\xfex\0"[..], b"\xfe\xffx", b"PK\x03\x04\xe8", b"a\x9fb"] {
+            assert_eq!(read(bytes), None, "{bytes:?}");
+        }
+    }
 }
