@@ -1,6 +1,6 @@
 //! The lab: a page in a browser on this machine, in which one writes a system and sees what can be told of it.
 //!
-//! Two halves that know each other by lines of JSON alone. The [server](serve) hands out the page and passes questions on; it reads
+//! Two halves that know each other by lines of JSON alone. The server ([`LabServer`]) hands out the page and passes questions on; it reads
 //! no proof file and decides nothing. Each question goes to a process of its own ([`answer`]), with a limit of time and of memory: what
 //! a text can do to that process it does to no other, and to stop a question is to end its process.
 

@@ -207,10 +207,12 @@ export class Answers {
             const heads = ["unknown", "is a", "and is", ...(globally ? ["values for given outputs"] : [])];
             parts.push(element("div", { class: "wide" }, element("table", { class: "unknowns" },
                 element("thead", {}, element("tr", {}, heads.map(head => element("th", {}, head)))), element("tbody", {}, rows))));
-            const { fields = [], fields_missing, functions = [], functions_missing } = unobservable[place] ?? {};
+            const { fields = [], fields_missing, functions = [], functions_missing, for_all_parameters: forAll } = unobservable[place] ?? {};
+            const held = Object.entries(branch.held_at_the_files_values ?? {}).map(([name, value]) => `${name} = ${value}`).join(", ");
+            if (held) parts.push(element("p", { class: "hint", id: "held" }, `at the values in the file: ${held}`));
             if (fields.length || fields_missing) {
                 parts.push(element("h2", {}, "Unobservable directions"));
-                parts.push(element("p", { class: "hint" }, "Along such a field no output and none of its Lie derivatives changes (proved)."));
+                parts.push(element("p", { class: "hint" }, `Along such a field no output and none of its Lie derivatives changes (proved, generically, ${forAll ? "for all parameter values" : "at the values in the file"}).`));
                 for (const field of fields) {
                     const components = field.components.flatMap((part, place) => [place ? ",\u2003" : "", formula(part.mathml[0], part.of), "\u2032 = ", formula(part.mathml[1], part.text)]);
                     parts.push(element("p", { class: "formula wide", title: field.text }, components));

@@ -32,7 +32,7 @@ export class MapPanel {
         this.line = element("div");
         this.lineAsked = element("div", { class: "row" });
         panel.append(
-            element("p", { class: "hint" }, "How well the worst unknown, or one, is observable: its standard deviation over its prior one, where each Lie derivative is measured up to its own range (computed, not certified). Light is well; dark is badly; green is unobservable or not to be told from it; white is a pole. Where the pointer rests the rank is decided, by exact arithmetic at that very state."),
+            element("p", { class: "hint" }, "How well the worst unknown, or one, is observable: its standard deviation over its prior one, where each Lie derivative is measured up to its own range (computed, not certified). Light is well; dark is badly; green is unobservable or not to be told from it; white is where something does not exist, as at a pole. Where the pointer rests the rank is decided, by exact arithmetic at that very state."),
             this.settings, this.sliders, this.failure,
             element("div", { class: "axes" }, this.up, element("div", { class: "picture" }, this.canvas), this.across),
             element("div", { class: "scale", "aria-hidden": "true" }, ["1", "10", "100", "1000 and more", "infinite"].map(text => element("span", {}, text))),
@@ -230,7 +230,7 @@ export class MapPanel {
         const at = this.state();
         const value = values[cell];
         const name = worst[cell] == null || !this.names ? "" : this.of.value ? ` of ${this.of.value}` : ` of ${this.names[worst[cell]]}, the worst`;
-        const told = value == null ? "a pole" : value < 0 ? `unobservable, or not to be told from it${name}` : `standard deviation over the prior one ${shown(value)}${name}`;
+        const told = value == null ? "something does not exist there, as at a pole" : value < 0 ? `unobservable, or not to be told from it${name}` : `standard deviation over the prior one ${shown(value)}${name}`;
         this.read.textContent = `${x} = ${shown(at[x])}, ${y} = ${shown(at[y])}: ${told}`;
     }
 

@@ -349,6 +349,17 @@ fn loops_and_elements_of_scripts() {
         assert_eq!(loops(lines).replace("= 0 - ", "= -"), chain, "{lines}");
     }
     assert!(plain("0.9D0*x1; 1.5d-1*x2; 2e1*x3").contains("x1' = 0.9*x1\n  x2' = 0.15*x2\n  x3' = 20*x3"));
+    // a matrix has its elements by rows and columns, and by one number in the order of its columns
+    let matrix = "A = zeros(3, 3); A(2,1) = k; A(6) = k; A(1,1) = -d; A(5) = -d; A(3,3) = A(2,2);\nf = A*x + [k; 0; 0];\n";
+    let of_matrix = of_text("a.m", &format!("{head}{matrix}"));
+    let vector = of_text("a.m", &format!("{head}f = [-d*x1 + k; -d*x2 + k*x1; -d*x3 + k*x2];\n"));
+    let (mut one, mut other) = (Both::new(&of_matrix), Both::new(&vector));
+    let at = one.state(&mut Draws(7));
+    let at_other = other.state(&mut Draws(7));
+    for name in ["x1", "x2", "x3"] {
+        let rates = one.rate(&at, name).zip(other.rate(&at_other, name));
+        assert!(rates.is_some_and(|(one, other)| close(one, other)), "{name}: {}", of_matrix.text);
+    }
     let python = "import sympy as sym\nx1, x2, k = sym.symbols('x1 x2 k')\nx = [[x1],[x2]]\np = [[k]]\nf = sym.zeros(2, 1)\nf[0] = -k*x1\nf[1, 0] = k*x1\nh = [x2]\n";
     assert!(of_text("a.py", python).text.contains("x1' = -k*x1\n  x2' = k*x1"));
 }

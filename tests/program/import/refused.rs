@@ -268,6 +268,19 @@ fn what_is_made_to_hurt_is_refused() {
                 "end\n".repeat(7)
             ),
         ),
+        (
+            "a.m",
+            format!("syms x1\nx = x1;\nv = 1;\n{}f = zeros(v, 1);\nh = x1;\n", "v = v + v;\n".repeat(90)),
+        ),
+        (
+            "a.m",
+            "syms x1\nx = x1;\nv = 1;\nfor i = 1:19000\nv = v + 1;\nend\nf = zeros(v, 2);\nh = x1;\n"
+                .to_owned(),
+        ),
+        (
+            "a.m",
+            "syms x1\nx = x1;\nf(1) = x1;\nfor i = 1:19000\nf(1) = sin(f(1));\nend\nh = x1;\n".to_owned(),
+        ),
         ("a.m", "syms x1\nx = x1;\nf(1e18) = x1;\nh = x1;\n".to_owned()),
         ("a.m", "syms x1\nx = x1;\nfor i = -9e18:9e18\nend\nf = x1; h = x1;\n".to_owned()),
         ("a.m", "syms x1\nx = x1;\nfor i = 1:3\nf = x1; h = x1;\n".to_owned()),

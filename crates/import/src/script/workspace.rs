@@ -10,7 +10,7 @@ use palmistry_lang::Problem;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A matrix with more entries is refused.
-const MOST_ENTRIES: usize = 20_000;
+pub(super) const MOST_ENTRIES: usize = 20_000;
 
 /// What a name stands for.
 #[derive(Clone, Debug)]
@@ -57,6 +57,8 @@ pub(crate) struct ScriptWorkspace<'b> {
     /// The names of definitions, and of those that several have, the last number that was put behind.
     defined: BTreeSet<String>,
     counts: BTreeMap<String, usize>,
+    /// The definitions that are whole numbers.
+    pub(super) wholes: BTreeMap<String, i64>,
     /// How often each symbol stands in definitions and in what names stand for.
     used: BTreeMap<String, usize>,
     /// Names that are kept as values and get no definition.
@@ -75,6 +77,7 @@ impl<'b> ScriptWorkspace<'b> {
             definitions: Vec::new(),
             defined: BTreeSet::new(),
             counts: BTreeMap::new(),
+            wholes: BTreeMap::new(),
             used: BTreeMap::new(),
             plain: BTreeSet::new(),
         }
@@ -145,6 +148,10 @@ impl<'b> ScriptWorkspace<'b> {
                     own = format!("{name}_{count}");
                 }
                 let span = one.span.clone();
+                // by those before it: a number that is doubled sixty times is not looked for in all of its parts
+                if let Some(number) = self.whole(&one) {
+                    self.wholes.insert(own.clone(), number);
+                }
                 self.defined.insert(own.clone());
                 count_names(&mut self.used, &one, true);
                 self.definitions.push((own.clone(), one));
@@ -250,63 +257,6 @@ impl<'b> ScriptWorkspace<'b> {
         meaning(syntax, &mut special)
     }
 
-    /// The whole number that an expression of numbers is, by what definitions stand for.
-    pub fn whole(&self, value: &ForeignExpr) -> Option<i64> {
-        match &value.kind {
-            ForeignKind::Number(number) if number.is_int() => i64::try_from(number.numerator().clone()).ok(),
-            ForeignKind::Name(name) => {
-                // what a definition is made of stands before it
-                let (_, value) = self.definitions.iter().rfind(|(defined, _)| defined == name)?;
-                self.whole(value)
-            }
-            ForeignKind::Sum(terms) => terms.iter().try_fold(0_i64, |sum, (subtracted, term)| {
-                let term = self.whole(term)?;
-                if *subtracted { sum.checked_sub(term) } else { sum.checked_add(term) }
-            }),
-            ForeignKind::Product(factors) => factors.iter().try_fold(1_i64, |product, (divided, factor)| {
-                let factor = self.whole(factor)?;
-                match divided {
-                    false => product.checked_mul(factor),
-                    true => (factor != 0 && product % factor == 0).then(|| product / factor),
-                }
-            }),
-            _ => None,
-        }
-    }
-
-    /// The number of something, if it is a whole one and not negative.
-    pub fn count(&mut self, syntax: &Syntax) -> Result<Option<usize>, Problem> {
-        let value = match self.value(syntax)? {
-            ScriptValue::One(one) => self.whole(&one),
-            _ => None,
-        };
-        Ok(value.and_then(|value| usize::try_from(value).ok()))
-    }
-
-    /// Assigns a value to an element of a vector, counted from 1, which grows where it has none of this number. A vector that is not there yet
-    /// is a row, as in MATLAB.
-    pub fn assign_element(&mut self, name: &str, at: usize, value: ForeignExpr) -> Result<(), Problem> {
-        let span = value.span.clone();
-        let (rows, mut entries) = match self.get(name) {
-            None | Some(Ok(ScriptValue::Else)) => (1, Vec::new()),
-            Some(Ok(ScriptValue::One(one))) => (1, vec![one]),
-            Some(Ok(ScriptValue::Many { rows, entries })) => (rows, entries),
-            Some(Err(why)) => return Err(why),
-        };
-        let is_column = rows == entries.len() && rows > 1;
-        if rows > 1 && !is_column && at > entries.len() || at == 0 || at > MOST_ENTRIES {
-            return Err(Problem::new(&span, format!("'{name}' has no element {at}"), "this")
-                .help("elements are counted from 1"));
-        }
-        if at > entries.len() {
-            entries.resize(at, ForeignExpr::integer(0, &span));
-        }
-        entries[at - 1] = value;
-        let rows = if is_column { entries.len() } else { rows.max(1) };
-        self.bind(name, ScriptValue::Many { rows, entries });
-        Ok(())
-    }
-
     fn call(&mut self, syntax: &Syntax) -> Valued {
         let span = &syntax.span;
         let Some((name, arguments)) = named_function(syntax) else { return self.function_of_time(syntax) };
@@ -314,12 +264,15 @@ impl<'b> ScriptWorkspace<'b> {
         if let Some(Err(why)) = self.get(name) {
             return Err(why);
         }
-        // an element of a vector, in MATLAB
-        if let Some(Ok(ScriptValue::Many { entries, .. })) = self.get(name)
-            && let [index] = arguments
-        {
-            let at = self.count(index)?;
-            let inside = at.and_then(|at| entries.get(at.checked_sub(1)?).cloned());
+        // an element of a vector or of a matrix, in MATLAB
+        if let (Some(Ok(ScriptValue::Many { entries, .. })), 1..=2) = (self.get(name), arguments.len()) {
+            let mut numbers = Vec::new();
+            for index in arguments {
+                numbers.extend(self.count(index)?);
+            }
+            let is_whole = numbers.len() == arguments.len();
+            let place = if is_whole { self.element(name, &numbers, true) } else { None };
+            let inside = place.and_then(|place| entries.get(place).cloned());
             return inside.map(ScriptValue::One).ok_or_else(|| {
                 Problem::new(span, format!("'{name}' has no such element"), "this")
                     .help("elements are counted from 1")

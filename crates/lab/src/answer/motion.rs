@@ -18,6 +18,8 @@ use std::collections::{BTreeMap, HashMap};
 const MOST_SAMPLES: usize = 5000;
 /// Steps along an unobservable field, of Runge and Kutta's fourth order.
 const STEPS: usize = 400;
+/// An output that is smaller than the largest one by this factor is what the integration leaves.
+const NOTHING: f64 = 1e-12;
 
 #[derive(Deserialize)]
 pub(super) struct MotionAsked {
@@ -75,14 +77,20 @@ fn told(found: &Response) -> Value {
     })
 }
 
-/// The greatest difference of the outputs, over the greatest output.
+/// The greatest difference of an output over its own size: a small output is not lost beside a large one. One that is zero but for what the
+/// integration leaves has no size.
 fn difference(first: &Response, second: &Response) -> f64 {
-    let pairs = || {
-        let both = first.outputs.iter().zip(&second.outputs);
-        both.flat_map(|((_, one), (_, other))| one.iter().zip(other))
-    };
-    let size = pairs().fold(1e-300, |size: f64, (one, _)| size.max(one.abs()));
-    pairs().fold(0.0, |most: f64, (one, other)| most.max((one - other).abs())) / size
+    let size = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let least = NOTHING * first.outputs.iter().fold(0.0, |most: f64, (_, values)| most.max(size(values)));
+    let mut most = 0.0_f64;
+    for ((_, one), (_, other)) in first.outputs.iter().zip(&second.outputs) {
+        let far: Vec<f64> = one.iter().zip(other).map(|(one, other)| one - other).collect();
+        let far = size(&far);
+        if far > 0.0 {
+            most = most.max(far / size(one).max(least));
+        }
+    }
+    most
 }
 
 /// The unobservable directions that are known as vector fields.
@@ -165,4 +173,26 @@ fn moved(
     let mut found = start.clone();
     found.extend(field.components.iter().map(|part| part.name.clone()).zip(at));
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(outputs: &[&[f64]]) -> Response {
+        let outputs = outputs.iter().map(|values| ("y".to_owned(), values.to_vec())).collect();
+        let (times, states, inputs) = (vec![0.0, 1.0], Vec::new(), Vec::new());
+        Response { times, states, outputs, inputs, constants: BTreeMap::new(), ended: None }
+    }
+
+    /// By hand: a small output that differs beside a large one that does not; outputs that are zero; a motion that ends early.
+    #[test]
+    fn each_output_is_compared_by_its_own_size() {
+        let large: &[f64] = &[1e6, -1e6];
+        assert_eq!(difference(&of(&[large, &[1e-3, 0.0]]), &of(&[large, &[2e-3, 0.0]])), 1.0);
+        assert_eq!(difference(&of(&[&[0.0, 0.0]]), &of(&[&[0.0, 0.0]])), 0.0);
+        assert!(difference(&of(&[&[1.0, 2.0], &[0.0, 0.0]]), &of(&[&[1.0, 2.0], &[1e-15, 0.0]])) < 1e-2);
+        assert_eq!(difference(&of(&[&[0.0, 0.0]]), &of(&[&[0.0, 1.0]])), f64::INFINITY);
+        assert_eq!(difference(&of(&[&[1.0, 5.0]]), &of(&[&[1.0]])), 0.0);
+    }
 }

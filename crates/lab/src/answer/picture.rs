@@ -102,9 +102,8 @@ pub(super) fn state(place: &Place<'_>, asked: &StateAsked) -> Result<Value, Refu
     };
     // what is known is put in, and everything else is a coordinate
     let fixed = exact.iter().filter_map(|(name, value)| Some((is_held(&system, name)?, value.clone())));
-    let question = RankQuestion { samples: 0, fixed: fixed.collect(), ..RankQuestion::default() };
+    let question = RankQuestion { samples: 1, fixed: fixed.collect(), ..RankQuestion::default() };
     let refused = |why: palmistry_rank::sweep::RankError| Refused::new(why.to_string());
-    let question = RankQuestion { samples: 1, ..question };
     let given = RankPreparation::new(&mut system, &question).map_err(refused)?;
     let given = given.at_given_states(&mut system).map_err(refused)?;
     let value = |symbol: &palmistry_math::expression::Symbol| {

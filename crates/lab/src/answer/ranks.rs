@@ -41,6 +41,7 @@ pub(super) fn rank(place: &Place<'_>, samples: u64, tell: Tell<'_>) -> Result<Va
         json!({
             "conditions": branch.conditions,
             "fields": motions.map_or(&[][..], |found| &found.fields).iter().map(field).collect::<Vec<_>>(),
+            "for_all_parameters": motions.is_none_or(|found| found.for_all_parameters),
             "fields_missing": motions.map(|found| found.fields_missing),
             "functions": functions.iter().map(|one| json!({ "text": one.text, "mathml": formula_mathml(&one.text) })).collect::<Vec<_>>(),
             "functions_missing": motions.map(|found| found.functions_missing),

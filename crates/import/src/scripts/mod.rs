@@ -1,6 +1,8 @@
 //! Model files of StrikePy (Python) and STRIKE-GOLDD (MATLAB): assignments to `x`, `p`, `h`, `f`, `u` and `w`. They are read, and
 //! never run.
 
+mod loops;
+
 use super::expression::{ForeignExpr, ForeignKind, Span};
 use super::model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate};
 use super::script::{
@@ -38,10 +40,6 @@ const CONTROL: [&str; 17] = [
     "for", "while", "if", "switch", "function", "try", "parfor", "def", "class", "with", "return", "lambda",
     "elif", "else", "classdef", "global", "assume",
 ];
-
-/// Loops within loops beyond this are not read, nor more statements within loops than that.
-const DEEPEST_LOOP: usize = 8;
-const MOST_REPETITIONS: u64 = 20_000;
 
 /// Reads a model file: the model that it saves, or the one of several that has a name or number.
 pub(super) fn read(
@@ -160,124 +158,6 @@ impl Script<'_> {
         self.assigned(&targets, &right)
     }
 
-    /// `for i = 1:n ... end`: its statements are read once for each number, in order. Nothing else of a loop is read.
-    fn repeated(&mut self, parser: &mut Parser<'_>) -> Result<(), Problem> {
-        let begin = parser.next().span.clone();
-        self.deep += 1;
-        if self.deep > DEEPEST_LOOP {
-            return Err(Problem::new(&begin, format!("more than {DEEPEST_LOOP} loops within loops"), "here"));
-        }
-        let in_brackets = parser.take("(");
-        let variable = parser.next();
-        if variable.kind != TokenKind::Name || !parser.take("=") {
-            return Err(Problem::new(&variable.span, "expected a loop such as 'for i = 1:3'", "here"));
-        }
-        let numbers = self.loop_numbers(parser)?;
-        if in_brackets && !parser.take(")") {
-            return Err(parser.unexpected("')'"));
-        }
-        let body = parser.position();
-        for number in &numbers {
-            parser.go_to(body);
-            let value = ForeignExpr::integer(*number, &variable.span);
-            self.workspace.bind(&variable.text, ScriptValue::One(value));
-            while !parser.peek().is_word("end") {
-                if parser.take(";") || parser.take(",") {
-                    continue;
-                }
-                let (place, spent) = (parser.position(), self.repetitions);
-                if parser.at_end() || spent >= MOST_REPETITIONS {
-                    let why = if parser.at_end() {
-                        "this loop has no 'end'"
-                    } else {
-                        "these loops have too many steps"
-                    };
-                    return Err(Problem::new(&begin, why, "this loop").help("write the model without it"));
-                }
-                self.repetitions += 1;
-                self.statement(parser)?;
-                let next = parser.peek();
-                let is_over = next.newline || next.is(";") || next.is(",") || next.is_word("end");
-                if parser.at_end() || !is_over || parser.position() == place {
-                    return Err(parser.unexpected("the end of the line"));
-                }
-            }
-        }
-        if numbers.is_empty() {
-            self.skip_loop(parser);
-        }
-        if !parser.peek().is_word("end") {
-            return Err(parser.unexpected("'end'"));
-        }
-        parser.next();
-        self.deep -= 1;
-        Ok(())
-    }
-
-    /// The numbers that a loop goes through: `1:3`, `9:-2:1`, `[1 4 6]`.
-    fn loop_numbers(&mut self, parser: &mut Parser<'_>) -> Result<Vec<i64>, Problem> {
-        let first = parser.expression()?;
-        let mut parts = vec![self.workspace.value(&first)?];
-        while parser.take(":") {
-            let next = parser.expression()?;
-            parts.push(self.workspace.value(&next)?);
-        }
-        let no = || {
-            Problem::new(&first.span, "a loop goes through whole numbers", "these")
-                .help("write them as 1:3, or as [1 2 3]")
-        };
-        let mut numbers = Vec::new();
-        for part in parts.iter().cloned() {
-            let entries = part.entries().ok_or_else(no)?;
-            numbers.push(
-                entries
-                    .iter()
-                    .map(|one| self.workspace.whole(one))
-                    .collect::<Option<Vec<i64>>>()
-                    .ok_or_else(no)?,
-            );
-        }
-        let one =
-            |numbers: &Vec<i64>| <[i64; 1]>::try_from(numbers.as_slice()).map(|[one]| one).map_err(|_| no());
-        let (low, step, high) = match numbers.as_slice() {
-            [list] => return Ok(list.clone()),
-            [low, high] => (one(low)?, 1, one(high)?),
-            [low, step, high] => (one(low)?, one(step)?, one(high)?),
-            _ => return Err(no()),
-        };
-        if step == 0 || (high.saturating_sub(low) / step).unsigned_abs() > MOST_REPETITIONS {
-            return Err(no());
-        }
-        let is_within = |at: &i64| if step > 0 { *at <= high } else { *at >= high };
-        Ok(std::iter::successors(Some(low), |at| at.checked_add(step)).take_while(is_within).collect())
-    }
-
-    /// Goes to the end of a loop that is never gone through.
-    fn skip_loop(&self, parser: &mut Parser<'_>) {
-        let (mut open, mut brackets) = (0_usize, 0_usize);
-        while !parser.at_end() {
-            let word = parser.peek();
-            match &word.kind {
-                TokenKind::Sign("(" | "[" | "{") => brackets += 1,
-                TokenKind::Sign(")" | "]" | "}") => brackets = brackets.saturating_sub(1),
-                // `x(end)` is an element
-                TokenKind::Name if brackets == 0 && word.text == "end" => match open {
-                    0 => return,
-                    _ => open -= 1,
-                },
-                TokenKind::Name
-                    if brackets == 0
-                        && ["for", "if", "while", "switch", "try", "parfor"]
-                            .contains(&word.text.as_str()) =>
-                {
-                    open += 1;
-                }
-                _ => {}
-            }
-            parser.next();
-        }
-    }
-
     /// An expression, or several with commas between them in Python.
     fn right_side(&mut self, parser: &mut Parser<'_>) -> Result<Syntax, Problem> {
         let first = parser.expression()?;
@@ -363,7 +243,7 @@ impl Script<'_> {
         Ok(())
     }
 
-    /// `f(2) = ...` in MATLAB, `f[1] = ...` in Python: the name of the vector, and the number of the element, from 1.
+    /// `f(2) = ...` in MATLAB, `f[1] = ...` in Python: the name of the vector or matrix, and the place of the element among its entries.
     fn element(&mut self, target: &Syntax) -> Result<Option<(String, usize)>, Problem> {
         let (vector, indices, from) = match (&target.kind, self.dialect) {
             (SyntaxKind::Call(vector, indices), Dialect::Matlab) => (vector, indices, 1),
@@ -376,12 +256,8 @@ impl Script<'_> {
             let Some(number) = self.workspace.count(index)? else { return Ok(None) };
             numbers.push(number + 1 - from);
         }
-        // an element of a column or of a row may be named by both
-        let at = match numbers.as_slice() {
-            [at] | [at, 1] | [1, at] => *at,
-            _ => return Ok(None),
-        };
-        Ok(Some((name.to_owned(), at)))
+        let place = self.workspace.element(name, &numbers, self.dialect == Dialect::Matlab);
+        Ok(place.map(|place| (name.to_owned(), place)))
     }
 
     fn assigned(&mut self, targets: &[Syntax], right: &Syntax) -> Result<(), Problem> {
@@ -389,8 +265,16 @@ impl Script<'_> {
             && target.as_name().is_none()
             && let Some((name, at)) = self.element(target)?
         {
-            match self.workspace.one(right) {
-                Ok(value) => self.workspace.assign_element(&name, at, value)?,
+            match self.workspace.value(right).map(ScriptValue::entries) {
+                Ok(Some(entries)) if entries.len() == 1 => {
+                    for value in entries {
+                        self.workspace.assign_element(&name, at, value)?;
+                    }
+                }
+                Ok(_) => {
+                    let why = Problem::new(&right.span, "an element is one number", "this is none");
+                    self.workspace.break_name(&name, why);
+                }
                 Err(why) => self.workspace.break_name(&name, why),
             }
             return Ok(());
