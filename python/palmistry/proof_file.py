@@ -13,7 +13,7 @@ from .proof_parser import HOLDS, NAME, Parser, texts, without_comments
 LETTERS = ("alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi chi psi omega".split())
 GREEK = {chr(base + at + (at > 16)): x for at, name in enumerate(LETTERS) for base, x in ((0x3b1, name), (0x391, name.capitalize()))}
 GREEK |= zip("\u03c2\u03d0\u03d1\u03d5\u03d6\u03f0\u03f1\u03f5\u00b5\u2126\u2206", "sigma beta theta phi pi kappa rho epsilon mu Omega Delta".split())
-ENTRY = re.compile(r"^[ \t]*(?=(?:system|use|state|param|angle|assume|known|unknown|initial|experiments|let|drift|input|field"
+ENTRY = re.compile(r"^[ \t]*(?=(?:system|use|state|param|angle|assume|latex|known|unknown|initial|experiments|let|drift|input|field"
                    r"|output|sample|claim|erratum|damaged|scan|convention|loose|definition|undecided|set|pole|map|line"
                    r"|reduction)\b)", re.M)
 LARGEST, MOST_CLAIMS, MOST_NAMES = 16 << 20, 100_000, 2000  # bytes of a proof file; its entries; symbols of one kind
@@ -114,7 +114,8 @@ class System:
         text = spelled(text)
         self.digest, self.names, self.claims = digest(whole) if depth == 0 else "", defaultdict(list), {}
         self.lets, self.rates, self.known, self.assumed = {}, {}, {}, []
-        self.functions = {**FUNCTIONS, "d": self.differentials, "bracket": self.bracket}
+        self.functions = {**FUNCTIONS, "d": self.differentials, "bracket": self.bracket,
+                          "codistribution": self.codistribution}
         found = ENTRY.split(text if re.search(r"^[ \t]*drift\b", text, re.M) else text + "\ndrift signals")
         if len(found) > MOST_CLAIMS:
             refuse(f"more than {MOST_CLAIMS} entries")
@@ -193,6 +194,15 @@ class System:
         units = [self.unit(column) for column in [named(x).args[0] for x in columns] or self.columns()]
         return Matrix(tuple(unit[x] for unit in units) for x in entries(of))
 
+    def codistribution(self, order):
+        """The differentials of the outputs, and of what they are along at most so many fields that move the system."""
+        rows = last = self.seen()
+        for _ in range(int(single(order).args[0])):
+            last = [self[name].along[x] for name in self.names["moving"] for x in last]
+            spend(len(last))
+            rows = rows + last
+        return self.differentials(Matrix((x,) for x in rows))
+
     def unit(self, column):
         return self.known.setdefault((column, "unit"), derivation(lambda name: number(name == column)))
 
@@ -217,13 +227,13 @@ class System:
         where += self.assumed
         self.said = [claim, *where]
         conditions = [x for text in where for x in self.read(text)]
+        moving = [*self.names["output"], *(text for name in self.names["moving"] for text in self.rates[name][1].values())]
         if re.fullmatch(r"\s*rank\s*=\s*\d{1,4}\s*", claim):
-            moving = [text for name in self.names["moving"] for text in self.rates[name][1].values()]
-            self.said = [*self.names["output"], *moving, *where]
+            self.said = [*moving, *where]
             return "rank", None, int(claim.split("=")[1]), conditions
         if found := re.fullmatch(r"\s*(rank|(un)?(?:observable|identifiable))\s*\((.*)\)\s*(?:=\s*(\d{1,4})\s*)?", claim, re.S):
             asked, un, inside, claimed = found.groups()
-            of, self.said = self.read(inside), [inside, *where]
+            of, self.said = self.read(inside), [inside, *moving * ("codistribution" in inside), *where]
             if (asked == "rank") != (claimed is not None) or asked == "rank" and len(of) > 1:
                 refuse("a statement with more or less than it needs")
             if asked == "rank":

@@ -202,7 +202,7 @@ def texts(entry):
     body = body.strip()
     if kind == "claim" and colon:
         return {name: body.rstrip('"').strip()}
-    found = re.split(r"\b(?:corrected|repaired|meant)\b", body, maxsplit=1)
+    found = re.split(r"\b(?:corrected|repaired|meant)\b", re.split(r"\bconclusion\b", body)[0], maxsplit=1)
     if kind not in ("erratum", "damaged", "scan", "convention", "loose") or len(found) == 1 or not re.match(r"\w", body):
         return {}
     printed, right = re.sub(r"^\w+", "", found[0]).strip().removeprefix('"').strip(), found[1]

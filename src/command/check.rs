@@ -17,12 +17,12 @@ use std::path::PathBuf;
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry check mysystem.proof            every mistake, each at its place
-  palmistry check proofs/ --json            the same for an editor: file, line, column, message, help")]
+  palmistry check proofs/ --json            the same for an editor: file, line, column, code, message, help")]
 pub(crate) struct Check {
     /// Proof files, or folders in which every .proof file is taken.
     #[arg(required = true, value_name = "FILE-OR-FOLDER")]
     paths: Vec<PathBuf>,
-    /// Print one JSON object: 'ok', 'files', and 'errors' with file, line, column, message and help.
+    /// Print one JSON object: 'ok', 'files', and 'errors' with file, line, column, code, message and help.
     #[arg(long)]
     pub json: bool,
 }

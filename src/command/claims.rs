@@ -8,7 +8,7 @@ use clap::Args;
 use palmistry::checker::VerdictFile;
 use palmistry::claim::{Kept, Selection, UnmetPattern};
 use palmistry::report::{
-    ClaimsForm, ClaimsSummary, Shown, claim_json, claims_json, claims_text, junit, statement_latex,
+    ClaimsForm, ClaimsSummary, Shown, claim_json, claims_json, claims_text, junit, statement_latex_in,
 };
 use palmistry::{Outcome, System};
 use serde_json::{Value, json};
@@ -73,9 +73,9 @@ impl Claims {
     fn claim(&self, outcome: &Outcome) -> Value {
         let mut object = claim_json(outcome);
         if self.latex {
-            object["latex"] = json!(statement_latex(&outcome.statement));
+            object["latex"] = json!(statement_latex_in(&outcome.statement, &outcome.looks));
             if let Some((printed, _)) = &outcome.printed {
-                object["printed"]["latex"] = json!(statement_latex(printed));
+                object["printed"]["latex"] = json!(statement_latex_in(printed, &outcome.looks));
             }
         }
         object

@@ -59,11 +59,11 @@ impl Eval {
             let mut object =
                 value_json(&ValueAsked { expression: &self.expression, digits, at: &at }, &value);
             if self.latex {
-                object["latex"] = json!(expression_latex(&self.expression));
+                object["latex"] = json!(expression_latex(&self.expression, &system.looks));
             }
             print_json(&object)?;
         } else {
-            let formula = self.latex.then(|| expression_latex(&self.expression)).flatten();
+            let formula = self.latex.then(|| expression_latex(&self.expression, &system.looks)).flatten();
             let formula = formula.map_or(String::new(), |latex| format!("{latex}\n"));
             print_text(&format!("{formula}{}", value_text(&value)))?;
             // beside the value and not behind it: what is printed is what others read

@@ -16,6 +16,7 @@ mod coq;
 mod demo;
 mod derived;
 mod eval;
+mod explain;
 mod fmt;
 mod import;
 mod interrupt;
@@ -105,6 +106,7 @@ enum Verb {
     Lab(lab::Lab),
     New(new::New),
     Demo(demo::Demo),
+    Explain(explain::Explain),
     Fmt(fmt::Fmt),
     Lsp(lsp::Lsp),
     Completions(completions::Completions),
@@ -209,6 +211,7 @@ impl Verb {
             Verb::Lab(verb) => verb.json,
             Verb::New(verb) => verb.json,
             Verb::Demo(verb) => verb.json,
+            Verb::Explain(verb) => verb.json,
             Verb::Fmt(verb) => verb.json,
             Verb::Lsp(_) | Verb::Completions(_) | Verb::Man(_) => false,
         })
@@ -246,6 +249,7 @@ impl Verb {
             Verb::Lab(verb) => verb.run(),
             Verb::New(verb) => verb.run(),
             Verb::Demo(verb) => verb.run(),
+            Verb::Explain(verb) => verb.run(),
             Verb::Fmt(verb) => verb.run(),
             Verb::Lsp(verb) => verb.run(),
             Verb::Completions(verb) => verb.run(),

@@ -281,3 +281,21 @@ fn anchor(heading: &str) -> String {
     let kept = words.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
     kept.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
+
+/// The index of errors is what `explain` prints from, and every code has a wrong and a right example in it, which are run with the page.
+#[test]
+fn the_index_of_errors_is_the_programs_own() {
+    let source = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/lang/src/errors.md");
+    let own = std::fs::read_to_string(source).expect("the page");
+    assert_eq!(chapter("errors.md"), own, "book/src/errors.md is a copy of crates/lang/src/errors.md");
+    for (code, id) in palmistry::system::Code::ALL {
+        let examples = blocks(code.page());
+        let [wrong, right] = examples.as_slice() else { panic!("{id}: {} examples", examples.len()) };
+        assert_eq!(wrong.value("refused"), Some(id));
+        assert_eq!(right.value("refused"), None, "{id}");
+    }
+    let found = json(&palmistry(&["explain", "--json"]));
+    assert_eq!(found["errors"].as_array().unwrap().len(), palmistry::system::Code::ALL.len());
+    assert!(String::from_utf8_lossy(&palmistry(&["explain", "e201"]).stdout).contains("not known"));
+    assert_eq!(palmistry(&["explain", "E999"]).status.code(), Some(2));
+}

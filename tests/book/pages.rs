@@ -99,6 +99,9 @@ impl Page<'_> {
                     self.wrong(block, why);
                 }
             }
+            "toml" | "julia" if block.value("refused").is_some() || block.says("accepted") => {
+                self.described(block);
+            }
             // a file that commands below it read
             "toml" | "csv" | "julia" | "xml" | "python" | "matlab" | "text"
                 if block.value("file").is_some() => {}
@@ -117,11 +120,18 @@ impl Page<'_> {
         }
         let name = self.folder.join(block.value("file").unwrap_or("block.proof")).display().to_string();
         let system = match System::parse(&name, &text, self.folder) {
-            Ok(system) if block.says("refused") => {
+            Ok(system) if block.says("refused") || block.value("refused").is_some() => {
                 return self.wrong(block, format!("{} is read, and not refused", system.name));
             }
             Ok(system) => system,
             Err(_) if block.says("refused") => return,
+            Err(why) if block.value("refused").is_some() => {
+                let code = why.code.id();
+                if block.value("refused") != Some(code) {
+                    self.wrong(block, format!("refused with {code}: {why}"));
+                }
+                return;
+            }
             Err(why) => return self.wrong(block, format!("{:?}", miette::Report::new(why))),
         };
         let fails: Vec<&str> = block.value("fails").map_or(Vec::new(), |list| list.split(',').collect());
@@ -132,6 +142,29 @@ impl Page<'_> {
         }
         if let Some(file) = block.value("file") {
             self.shown.insert(file.to_owned(), text);
+        }
+    }
+
+    /// A scene, a model of another program, or a paper's description where it says so: accepted, or refused with a code.
+    fn described(&mut self, block: &Block) {
+        let (name, command) = match block.kind.as_str() {
+            "toml" if block.says("paper") => ("paper/paper.toml", "palmistry verify paper --out page"),
+            "toml" => ("scene.toml", "palmistry observe scene.toml"),
+            _ => ("model.jl", "palmistry import model.jl"),
+        };
+        std::fs::create_dir_all(self.folder.join("paper")).expect("a folder is made");
+        for (model, text) in &self.shown {
+            std::fs::write(self.folder.join("paper").join(model), text).expect("a file is written");
+        }
+        std::fs::write(self.folder.join(name), &block.text).expect("a file is written");
+        let output = self.run(block, command);
+        let is_refused = std::mem::take(&mut self.status) == 2;
+        let is_so = match block.value("refused") {
+            Some(code) => is_refused && output.contains(&format!("'palmistry explain {code}'")),
+            None => !is_refused,
+        };
+        if !is_so {
+            self.wrong(block, output);
         }
     }
 

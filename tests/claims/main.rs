@@ -25,6 +25,7 @@ mod mutation;
 mod nonrational;
 mod orders;
 mod published;
+mod rank_bounds;
 mod recheck;
 mod series;
 mod shown;

@@ -6,7 +6,7 @@ use super::expression::{ForeignExpr, ForeignKind};
 use super::model::{ForeignModel, ForeignRate};
 use super::print::{Written, without_case};
 use palmistry_io::foreign::Budget;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use std::collections::BTreeSet;
 
 /// A value with more parts than these gets a name before it is written twice.
@@ -98,7 +98,7 @@ impl Writing<'_> {
             if !is_total {
                 let message =
                     "the cases cannot be written as one expression: this one does not exist everywhere";
-                return Err(Problem::new(&value.span, message, "does not exist everywhere").help(
+                return Err(Problem::new(Code::Foreign, &value.span, message, "does not exist everywhere").help(
                     "what can be read: cases that are abs, min or max, or whose values are without quotients, roots and logarithms; or keep the case that holds where you look",
                 ));
             }

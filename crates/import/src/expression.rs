@@ -4,7 +4,7 @@
 //! Readers make these, [`super::printed`] writes them in our language; neither knows of the other.
 
 use dashu::rational::RBig;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use palmistry_math::number::parse_decimal;
 use std::ops::Range;
 
@@ -98,7 +98,7 @@ impl ForeignExpr {
     /// A number as it is written: digits, a point, an exponent.
     pub(super) fn number(text: &str, span: &Span) -> Result<ForeignExpr, Problem> {
         let value = (!text.contains('/')).then(|| parse_decimal(text)).flatten().ok_or_else(|| {
-            Problem::new(span, format!("'{text}' is no number that can be read"), "this")
+            Problem::new(Code::Foreign, span, format!("'{text}' is no number that can be read"), "this")
                 .help("decimals of at most 4096 digits, with an exponent of at most 4096")
         })?;
         Ok(ForeignExpr::new(ForeignKind::Number(value), span))

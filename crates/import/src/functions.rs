@@ -2,7 +2,7 @@
 
 use super::expression::{FUNCTIONS, ForeignExpr, ForeignKind, ForeignOrder, Span};
 use dashu::rational::RBig;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 
 /// What a foreign function is.
 enum Made {
@@ -138,7 +138,12 @@ pub(super) fn call(name: &str, mut arguments: Vec<ForeignExpr>, span: &Span) -> 
     let small = name.to_ascii_lowercase();
     let count = arguments.len();
     let wrong = |expected: &str| {
-        Problem::new(span, format!("'{name}' takes {expected}, and has {count} here"), "this call")
+        Problem::new(
+            Code::Foreign,
+            span,
+            format!("'{name}' takes {expected}, and has {count} here"),
+            "this call",
+        )
     };
     // a logarithm to another base is written with two arguments
     if small == "log" && count == 2 {
@@ -184,7 +189,7 @@ pub(super) fn call(name: &str, mut arguments: Vec<ForeignExpr>, span: &Span) -> 
         },
         (None, _) => {
             let message = format!("the function '{name}' has no counterpart in proof files");
-            return Err(Problem::new(span, message, "this function").help(
+            return Err(Problem::new(Code::Foreign, span, message, "this function").help(
                 "what can be read: powers, roots, exp, log, trigonometric and hyperbolic functions and their inverses, abs, sign, min, max",
             ));
         }

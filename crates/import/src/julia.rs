@@ -4,7 +4,7 @@ use super::expression::{ForeignExpr, Span};
 use super::model::{ForeignModel, ForeignOutput, ForeignRate};
 use super::script::{Dialect, Parser, Syntax, SyntaxKind, Token, TokenKind, meaning, tokens};
 use palmistry_io::foreign::Budget;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use std::collections::BTreeSet;
 
 /// A model in a file: where its macro stands, and how it is called.
@@ -70,15 +70,20 @@ fn chosen<'a>(text: &str, found: &'a [Found], which: Option<&str>) -> Result<&'a
     match which {
         None if found.len() > 1 => {
             let message = format!("the file has {} models", found.len());
-            Err(Problem::new(&found[1].span, message, "the second one")
+            Err(Problem::new(Code::Foreign, &found[1].span, message, "the second one")
                 .help(format!("say which with --model NAME or --model NUMBER: {}", list())))
         }
         None => Ok(&found[0]),
         Some(wanted) => {
             let by_number = wanted.parse::<usize>().ok().and_then(|number| found.get(number.checked_sub(1)?));
             found.iter().find(|one| one.name.as_deref() == Some(wanted)).or(by_number).ok_or_else(|| {
-                Problem::new(&found[0].span, format!("the file has no model '{wanted}'"), "a model")
-                    .help(format!("it has {}", list()))
+                Problem::new(
+                    Code::Foreign,
+                    &found[0].span,
+                    format!("the file has no model '{wanted}'"),
+                    "a model",
+                )
+                .help(format!("it has {}", list()))
             })
         }
     }
@@ -120,16 +125,15 @@ fn of_equations(equations: &[Syntax], is_discrete: bool, span: &Span) -> Result<
     let mut sides = Vec::new();
     for equation in equations {
         let wrong = || {
-            Problem::new(&equation.span, "this is no equation of a model", "this")
+            Problem::new(Code::Foreign, &equation.span, "this is no equation of a model", "this")
                 .help(format!("a model has lines {form}"))
         };
         let SyntaxKind::Equation("=", left, right) = &equation.kind else { return Err(wrong()) };
         sides.push((left_side(left, is_discrete).ok_or_else(wrong)?, left.as_ref(), right.as_ref()));
     }
     let Some(((_, time), ..)) = sides.first() else {
-        return Err(
-            Problem::new(span, "the model has no equations", "this").help(format!("it has lines {form}"))
-        );
+        return Err(Problem::new(Code::Foreign, span, "the model has no equations", "this")
+            .help(format!("it has lines {form}")));
     };
     let mut moved: BTreeSet<&str> = BTreeSet::new();
     let mut measured: BTreeSet<&str> = BTreeSet::new();
@@ -139,11 +143,17 @@ fn of_equations(equations: &[Syntax], is_discrete: bool, span: &Span) -> Result<
             Left::Output(name) => (name, measured.insert(name)),
         };
         if !is_new || moved.contains(name) && measured.contains(name) {
-            return Err(Problem::new(&place.span, format!("'{name}' has two equations"), "the second one")
-                .help("take one of them out"));
+            return Err(Problem::new(
+                Code::Foreign,
+                &place.span,
+                format!("'{name}' has two equations"),
+                "the second one",
+            )
+            .help("take one of them out"));
         }
         if own_time != time {
             return Err(Problem::new(
+                Code::Foreign,
                 &place.span,
                 format!("time is '{time}' above"),
                 format!("here it is '{own_time}'"),
@@ -178,11 +188,15 @@ fn right_side(
     inputs: &mut Inputs,
 ) -> Result<ForeignExpr, Problem> {
     meaning(syntax, &mut |part| match &part.kind {
-        SyntaxKind::Name(name) if name == time => {
-            Some(Err(Problem::new(&part.span, format!("time stands by itself: '{name}'"), "this")
-                .help("make it a state: add the equations time'(t) = 1 and y_time(t) = time(t)")))
-        }
+        SyntaxKind::Name(name) if name == time => Some(Err(Problem::new(
+            Code::Foreign,
+            &part.span,
+            format!("time stands by itself: '{name}'"),
+            "this",
+        )
+        .help("make it a state: add the equations time'(t) = 1 and y_time(t) = time(t)"))),
         SyntaxKind::Name(name) if measured.contains(name.as_str()) => Some(Err(Problem::new(
+            Code::Foreign,
             &part.span,
             format!("'{name}' is an output, and stands on a right side"),
             "this",
@@ -193,6 +207,7 @@ fn right_side(
             (SyntaxKind::Name(name), [only]) if only.as_name() == Some(time) => {
                 if measured.contains(name.as_str()) {
                     return Some(Err(Problem::new(
+                        Code::Foreign,
                         &part.span,
                         format!("'{name}' is an output, and stands on a right side"),
                         "this",

@@ -29,7 +29,7 @@ pub use model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate, Forei
 pub use petab::{ImportedProblem, PetabFile, PetabLoader, import_petab, is_petab, petab_beside};
 
 use palmistry_io::foreign::{Allowance, Budget, Spent};
-use palmistry_lang::{Problem, ReadError, System, with_plain_line_ends};
+use palmistry_lang::{Code, Problem, ReadError, System, with_plain_line_ends};
 use script::Dialect;
 use std::path::Path;
 
@@ -39,7 +39,7 @@ const ALLOWANCE: Allowance = Allowance { bytes: 16 << 20, nodes: 2_000_000, step
 
 /// That a model becomes too large to be read.
 fn too_much(place: &expression::Span, spent: Spent) -> Problem {
-    Problem::new(place, format!("the model becomes too large: {spent}"), "here")
+    Problem::new(Code::Foreign, place, format!("the model becomes too large: {spent}"), "here")
         .help("give parts that occur several times names of their own, and import a part of the model")
 }
 
@@ -168,7 +168,12 @@ pub fn import(name: &str, text: &str, question: &ImportQuestion) -> Result<Impor
         running.ok().map(|running| running.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
     });
     read.unwrap_or_else(|| {
-        let problem = Problem::new(&(0..text.len().min(1)), "there is no room to read this file", "the file");
+        let problem = Problem::new(
+            Code::Foreign,
+            &(0..text.len().min(1)),
+            "there is no room to read this file",
+            "the file",
+        );
         Err(problem.help("free some memory, and report the file if that does not help").locate(name, text))
     })
 }
@@ -192,7 +197,10 @@ fn read(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedMod
     }
     .map_err(located)?;
     let asked = |why: String| {
-        located(Problem::new(&(0..text.len().min(1)), why, "the file").help("name what the file has"))
+        located(
+            Problem::new(Code::Foreign, &(0..text.len().min(1)), why, "the file")
+                .help("name what the file has"),
+        )
     };
     if format != ForeignFormat::Formulas {
         model.choose_outputs(&question.outputs).map_err(asked)?;
@@ -200,7 +208,12 @@ fn read(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedMod
     model.choose_inputs(&question.known_inputs, &question.unknown_inputs).map_err(asked)?;
     model.choose_unknowns(&question.unknowns).map_err(asked)?;
     if model.states.is_empty() {
-        let problem = Problem::new(&(0..text.len().min(1)), "the file has no state that moves", "the file");
+        let problem = Problem::new(
+            Code::Foreign,
+            &(0..text.len().min(1)),
+            "the file has no state that moves",
+            "the file",
+        );
         return Err(located(problem.help("a model has at least one rate of change")));
     }
     model.order_definitions().map_err(located)?;
@@ -223,7 +236,7 @@ fn read(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedMod
         let (line, _) = why.line_and_column();
         let excerpt = written.text.lines().nth(line.saturating_sub(1)).unwrap_or_default().trim();
         let message = format!("what was made of it is no proof file: {}", why.message);
-        let problem = Problem::new(&(0..text.len().min(1)), message, "the file");
+        let problem = Problem::new(Code::Foreign, &(0..text.len().min(1)), message, "the file");
         let help = why.help.as_deref().map_or(String::new(), |help| format!("{help}; "));
         return Err(located(problem.help(format!("{help}it reads: {excerpt}"))));
     }

@@ -2,7 +2,7 @@
 
 use super::expression::{ForeignExpr, Span};
 use dashu::rational::RBig;
-use palmistry_lang::{Problem, nearest};
+use palmistry_lang::{Code, Problem, nearest};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
@@ -151,8 +151,13 @@ impl ForeignModel {
                             if !on_the_way.insert(*other) {
                                 let (name, value) = &self.definitions[*other];
                                 let message = format!("'{name}' is defined by itself");
-                                return Err(Problem::new(&value.span, message, "this definition")
-                                    .help("an equation that has to be solved is no definition: solve it"));
+                                return Err(Problem::new(
+                                    Code::Foreign,
+                                    &value.span,
+                                    message,
+                                    "this definition",
+                                )
+                                .help("an equation that has to be solved is no definition: solve it"));
                             }
                             open.push((*other, 0));
                         }

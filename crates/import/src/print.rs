@@ -6,7 +6,7 @@ use dashu::base::Sign;
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
 use palmistry_io::foreign::Budget;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 
 /// How strongly what is written holds together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -24,7 +24,7 @@ pub(super) fn text(
     budget: &Budget,
 ) -> Result<String, Problem> {
     if expression.depth() > super::expression::DEEPEST * 2 {
-        let problem = Problem::new(&expression.span, "this is nested too deeply", "this");
+        let problem = Problem::new(Code::Foreign, &expression.span, "this is nested too deeply", "this");
         return Err(problem.help("give inner parts names of their own"));
     }
     let text = written(expression, names)?.0;
@@ -110,7 +110,12 @@ fn written(expression: &ForeignExpr, names: &ForeignNames) -> Result<(String, Bi
             (format!("{name}({})", list.join(", ")), Binding::Primary)
         }
         ForeignKind::Case { .. } => {
-            return Err(Problem::new(&expression.span, "these cases cannot be written", "this"));
+            return Err(Problem::new(
+                Code::Foreign,
+                &expression.span,
+                "these cases cannot be written",
+                "this",
+            ));
         }
     })
 }

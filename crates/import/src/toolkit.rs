@@ -5,7 +5,7 @@ use super::expression::ForeignExpr;
 use super::model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate};
 use super::script::{Dialect, Parser, Syntax, SyntaxKind, Token, TokenKind, meaning};
 use dashu::rational::RBig;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the declarations of a file say.
@@ -36,7 +36,7 @@ pub(super) fn read(
     let lists = equations(words)?;
     if lists.is_empty() || declared.variables.is_empty() {
         let end = text.len();
-        return Err(Problem::new(&(0..end.min(1)), "the file has no model that can be read", "the file").help(
+        return Err(Problem::new(Code::Foreign, &(0..end.min(1)), "the file has no model that can be read", "the file").help(
             "a model is @ODEmodel(x'(t) = ..., y(t) = ...), or @parameters, @variables and lists of equations [D(x) ~ ...] and measured_quantities = [y ~ x]",
         ));
     }
@@ -53,6 +53,7 @@ pub(super) fn read(
         if let Some(state) = differentiated(left, &declared) {
             if !rated.insert(state.to_owned()) {
                 return Err(Problem::new(
+                    Code::Foreign,
                     &left.span,
                     format!("'{state}' has two equations"),
                     "the second one",
@@ -63,6 +64,7 @@ pub(super) fn read(
         } else if let Some(name) = variable(left, &declared) {
             if defined.insert(name.to_owned(), value).is_some() {
                 return Err(Problem::new(
+                    Code::Foreign,
                     &left.span,
                     format!("'{name}' has two equations"),
                     "the second one",
@@ -71,8 +73,13 @@ pub(super) fn read(
             }
             order.push(name.to_owned());
         } else {
-            return Err(Problem::new(&left.span, "the left side is no derivative and no variable", "this")
-                .help("a model has equations D(x) ~ ... and y ~ ...: solve it for one of these"));
+            return Err(Problem::new(
+                Code::Foreign,
+                &left.span,
+                "the left side is no derivative and no variable",
+                "this",
+            )
+            .help("a model has equations D(x) ~ ... and y ~ ...: solve it for one of these"));
         }
     }
     for equation in lists.iter().filter(|list| list.measured).flat_map(|list| &list.list) {
@@ -137,10 +144,13 @@ fn used_names(model: &ForeignModel) -> BTreeSet<String> {
 fn refuse_steps(words: &[Token]) -> Result<(), Problem> {
     let step = ["Difference", "ShiftIndex", "DiscreteSystem", "DiscreteProblem"];
     match words.iter().find(|word| step.iter().any(|name| word.is_word(name))) {
-        Some(word) => {
-            Err(Problem::new(&word.span, "models in steps are not read from ModelingToolkit", "this")
-                .help("write it as @DDSmodel(x(t + 1) = ..., y(t) = ...)"))
-        }
+        Some(word) => Err(Problem::new(
+            Code::Foreign,
+            &word.span,
+            "models in steps are not read from ModelingToolkit",
+            "this",
+        )
+        .help("write it as @DDSmodel(x(t + 1) = ..., y(t) = ...)")),
         None => Ok(()),
     }
 }
@@ -202,18 +212,23 @@ fn declare(one: &Syntax, is_parameter: bool, is_time: bool, declared: &mut Decla
         SyntaxKind::Name(name) => {
             declared.times.insert(name.clone());
             if !is_time && right.is_some() {
-                return Err(Problem::new(&one.span, format!("'{name}' is no function of time"), "this")
-                    .help(format!("write {name}(t), or declare it under @parameters")));
+                return Err(Problem::new(
+                    Code::Foreign,
+                    &one.span,
+                    format!("'{name}' is no function of time"),
+                    "this",
+                )
+                .help(format!("write {name}(t), or declare it under @parameters")));
             }
         }
         SyntaxKind::Call(callee, _) => match callee.as_name() {
             Some(name) => {
                 declared.variables.insert(name.to_owned());
             }
-            None => return Err(Problem::new(&left.span, "this is no name", "this")),
+            None => return Err(Problem::new(Code::Foreign, &left.span, "this is no name", "this")),
         },
         _ => {
-            return Err(Problem::new(&left.span, "this is no name that can be read", "this")
+            return Err(Problem::new(Code::Foreign, &left.span, "this is no name that can be read", "this")
                 .help("vectors of variables are not read: write their elements out"));
         }
     }
@@ -230,9 +245,13 @@ fn equations(words: &[Token]) -> Result<Vec<Equations>, Problem> {
             TokenKind::Sign("~") => match open.last_mut() {
                 Some((_, has_equations)) => *has_equations = true,
                 None if !within_block(words, at) => {
-                    return Err(Problem::new(&word.span, "an equation outside of a list", "this").help(
-                        "put equations into lists: eqs = [D(x) ~ ...] and measured_quantities = [y ~ x]",
-                    ));
+                    return Err(Problem::new(
+                        Code::Foreign,
+                        &word.span,
+                        "an equation outside of a list",
+                        "this",
+                    )
+                    .help("put equations into lists: eqs = [D(x) ~ ...] and measured_quantities = [y ~ x]"));
                 }
                 None => {}
             },
@@ -280,10 +299,8 @@ fn within_block(words: &[Token], at: usize) -> bool {
 fn sides(equation: &Syntax) -> Result<(&Syntax, &Syntax), Problem> {
     match &equation.kind {
         SyntaxKind::Equation("~", left, right) => Ok((left, right)),
-        _ => {
-            Err(Problem::new(&equation.span, "this is no equation", "this")
-                .help("an equation is left ~ right"))
-        }
+        _ => Err(Problem::new(Code::Foreign, &equation.span, "this is no equation", "this")
+            .help("an equation is left ~ right")),
     }
 }
 
@@ -321,7 +338,7 @@ fn value(syntax: &Syntax, declared: &Declared) -> Result<ForeignExpr, Problem> {
                     true => format!("time stands by itself: '{name}'"),
                     false => format!("'{name}' is declared neither as a parameter nor as a variable"),
                 };
-                Some(Err(Problem::new(&part.span, message, "this name")
+                Some(Err(Problem::new(Code::Foreign, &part.span, message, "this name")
                     .help("declare it with @parameters or @variables; time is a state with D(time) ~ 1")))
             }
             _ => None,

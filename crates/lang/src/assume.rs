@@ -1,5 +1,6 @@
 //! What a file assumes of its parameters and states: inequalities under which each of its claims is made.
 
+use super::codes::Code;
 use super::error::Problem;
 use super::model::System;
 use super::syntax::{ClaimBody, Statement};
@@ -12,7 +13,7 @@ impl System {
         for relation in relations {
             if relation.relation == Relation::Equal {
                 let message = "an equation is no assumption about a range of values";
-                return Err(Problem::new(&relation.span, message, "this equation").help(
+                return Err(Problem::new(Code::Assumption, &relation.span, message, "this equation").help(
                     "give a constant its value with 'param' or 'let', a state its initial condition with 'initial', or state it with 'where' in a claim",
                 ));
             }

@@ -1,5 +1,6 @@
 //! Whether a statement can be understood: its names are known, and its two sides can be equal at all.
 
+use super::codes::Code;
 use super::error::Problem;
 use super::model::{System, Value};
 use super::problems::Cause;
@@ -37,41 +38,52 @@ impl System {
         }
         if !comparable {
             let message = format!("{} cannot equal {}", values.0.describe(), values.1.describe());
-            let problem = Problem::new(&statement.span, message, "this claim");
+            let problem = Problem::new(Code::Value, &statement.span, message, "this claim");
             return Err(problem.because(Cause::Shape));
         }
         let relation = statement.equation.relation;
         let of_numbers = values.0.as_number().is_some() && values.1.as_number().is_some();
         let of_solutions = matches!(values, (Value::Solutions(_), _) | (_, Value::Solutions(_)));
-        if relation != Relation::Equal && !of_numbers && !of_solutions {
+        let is_rank = |value: &Value| matches!(value, Value::Rank(_) | Value::CodistributionRank);
+        let of_a_rank = is_rank(&values.0) || is_rank(&values.1);
+        let bounds_a_rank = of_a_rank && relation.is_ordering();
+        if relation != Relation::Equal && !of_numbers && !of_solutions && !bounds_a_rank {
             let (left, right) = (values.0.describe(), values.1.describe());
             let message = format!("'{}' compares numbers, not {left} and {right}", relation.sign());
-            return Err(Problem::new(&statement.equation.span, message, "this relation"));
+            return Err(Problem::new(Code::Statement, &statement.equation.span, message, "this relation"));
         }
         for further in &statement.further {
             self.scalar(&further.right)?;
         }
+        if bounds_a_rank && statement.further.iter().any(|further| !further.relation.is_ordering()) {
+            let message = "a rank has bounds, as in 2 <= rank <= 3";
+            return Err(Problem::new(Code::Statement, &statement.equation.span, message, "this relation"));
+        }
         if statement.on_sample && !of_numbers {
             let message = "'on sample' is said of numbers; a rank is the generic one";
-            return Err(Problem::new(&statement.span, message, "this claim"));
+            return Err(Problem::new(Code::Statement, &statement.span, message, "this claim"));
         }
-        let is_rank = |value: &Value| matches!(value, Value::Rank(_) | Value::CodistributionRank);
-        if statement.except.is_some() && !is_rank(&values.0) && !is_rank(&values.1) {
+        if statement.except.is_some() && !of_a_rank {
             let message =
                 "'everywhere' and 'except where' are said of a rank: all else is claimed wherever it exists";
-            return Err(Problem::new(&statement.span, message, "this claim"));
+            return Err(Problem::new(Code::Statement, &statement.span, message, "this claim"));
         }
         if let Some(unequal) =
             statement.except.iter().flatten().flatten().find(|e| e.relation != Relation::Equal)
         {
             let message = "what is left out is given by equations";
-            return Err(Problem::new(&unequal.span, message, "no equation"));
+            return Err(Problem::new(Code::Statement, &unequal.span, message, "no equation"));
         }
         for condition in statement.conditions.iter().chain(statement.except.iter().flatten().flatten()) {
             self.scalar(&condition.left)?;
             self.scalar(&condition.right)?;
             if let Some(within) = &condition.within {
-                return Err(Problem::new(&within.span, "a condition is met exactly", "without 'within'"));
+                return Err(Problem::new(
+                    Code::Statement,
+                    &within.span,
+                    "a condition is met exactly",
+                    "without 'within'",
+                ));
             }
         }
         if let Some(within) = &statement.equation.within {
@@ -81,7 +93,7 @@ impl System {
             let is_print = statement.equation.right.is_literal();
             if !is_print || !of_numbers || relation != Relation::Equal {
                 let message = "'carrying ... digits' is said of a number in print, as in e at {x = 1} = 2.718 carrying 10 digits";
-                return Err(Problem::new(&statement.span, message, "this claim"));
+                return Err(Problem::new(Code::Statement, &statement.span, message, "this claim"));
             }
         }
         Ok(())

@@ -1,6 +1,7 @@
 //! Vectors and their components. A component is a symbol, or a definition, like any other, and is called `x[3]`; here is said
 //! what is wrong with one that is not there.
 
+use super::codes::Code;
 use super::error::{Problem, nearest};
 use super::model::System;
 use super::problems::Cause;
@@ -53,7 +54,8 @@ impl System {
             None => Ok(()),
             Some(taken) => {
                 let message = format!("'{taken}' would be a vector and something without components");
-                Err(Problem::new(&name.span, message, "declared again").help("choose another name"))
+                Err(Problem::new(Code::Twice, &name.span, message, "declared again")
+                    .help("choose another name"))
             }
         }
     }
@@ -70,7 +72,8 @@ impl System {
             false => Ok(()),
             true => {
                 let message = format!("'{name}' has a meaning already, and would be an index here");
-                Err(Problem::new(&index.span, message, "declared elsewhere").help("choose another index"))
+                Err(Problem::new(Code::Component, &index.span, message, "declared elsewhere")
+                    .help("choose another index"))
             }
         }
     }
@@ -126,7 +129,7 @@ impl System {
             }
             let message = format!("'{name}' is a vector, and one of its components is needed");
             let help = format!("it has {}; in a list a range stands for all of them", self.components(name));
-            return Some(Problem::new(span, message, "which one?").help(help));
+            return Some(Problem::new(Code::Component, span, message, "which one?").help(help));
         };
         if self.find_symbol(&format!("{vector}[{number}]")).is_some() {
             // it is there, and not what stands behind its name
@@ -136,13 +139,18 @@ impl System {
             let known = self.components(vector);
             let message = format!("'{vector}' has no component {number}: it has {known}");
             let help = "where an index runs too far, give the components at the ends lines of their own";
-            Problem::new(span, message, format!("this is '{name}'")).help(help)
+            Problem::new(Code::Component, span, message, format!("this is '{name}'")).help(help)
         } else if self.find_symbol(vector).is_some() || self.definitions.contains_key(vector) {
             let message = format!("'{vector}' has no components");
-            Problem::new(span, message, format!("this is '{name}'"))
+            Problem::new(Code::Component, span, message, format!("this is '{name}'"))
                 .help(format!("declare a vector with its range, as in state {vector}_[1..3]"))
         } else {
-            let problem = Problem::new(span, format!("unknown vector '{vector}'"), "not declared above");
+            let problem = Problem::new(
+                Code::Component,
+                span,
+                format!("unknown vector '{vector}'"),
+                "not declared above",
+            );
             match nearest(vector, self.vectors.iter().map(String::as_str)) {
                 Some(near) => problem.help(format!("perhaps you meant '{near}'")),
                 None => problem.help(format!("declare its components, as in state {vector}[1..3]")),
@@ -162,7 +170,7 @@ impl System {
         match (indexed, index) {
             (Indexed::Component { vector, place: Place::Range(..), .. }, None) => {
                 let message = "a range of components stands for several, and one is needed here";
-                Problem::new(span, message, "this range").help(format!(
+                Problem::new(Code::Component, span, message, "this range").help(format!(
                     "write sum(i in 1..3, {vector}[i]) to add up; a range by itself is an entry of a list"
                 ))
             }
@@ -172,9 +180,9 @@ impl System {
                     Some(_) => format!("'{index}' is a state or parameter, and no index"),
                     None => format!("unknown index '{index}'"),
                 };
-                Problem::new(span, message, "nothing says what it runs through").help(format!(
-                    "write 'for {index} in 1..3' at the end, or sum({index} in 1..3, ...) around it"
-                ))
+                Problem::new(Code::Component, span, message, "nothing says what it runs through").help(
+                    format!("write 'for {index} in 1..3' at the end, or sum({index} in 1..3, ...) around it"),
+                )
             }
         }
     }

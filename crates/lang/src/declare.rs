@@ -6,6 +6,7 @@
 //! arbitrary signal, and nothing is cut off. `unknown w(t)` is such a chain up to the order that is assumed, and its last
 //! link stands still. In a second experiment each state, signal, input and output has a copy, `x@2`; constants have none.
 
+use super::codes::Code;
 use super::error::Problem;
 use super::model::{Assignment, Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Time, Value};
 use super::signals::{DeclaredInitial, DeclaredSignal, Derivatives, Knowledge, NOWHERE};
@@ -70,11 +71,11 @@ impl System {
     pub(super) fn enter_experiments(&mut self, count: &Expr, span: &Span) -> Result<(), Problem> {
         if whole(count, 1..=MOST_EXPERIMENTS).is_none() {
             let message = format!("the number of experiments is one from 1 to {MOST_EXPERIMENTS}");
-            return Err(Problem::new(&count.span, message, "this is none"));
+            return Err(Problem::new(Code::Initial, &count.span, message, "this is none"));
         }
         if self.coordinates.experiments_said {
             let message = "the file says already how many experiments there are";
-            return Err(Problem::new(span, message, "the second time"));
+            return Err(Problem::new(Code::Initial, span, message, "the second time"));
         }
         self.coordinates.experiments_said = true;
         Ok(())
@@ -84,12 +85,12 @@ impl System {
     pub(super) fn declare_coordinate(&mut self, name: &Name, kind: UnknownKind) -> Result<Symbol, Problem> {
         if let Some(field) = self.fields.first() {
             let message = format!("the field '{}' above does not know of this state", field.name);
-            return Err(Problem::new(&name.span, message, "declare states before fields"));
+            return Err(Problem::new(Code::TooLate, &name.span, message, "declare states before fields"));
         }
         if self.states_are_final {
             let message =
                 format!("something above is differentiated by all states, and '{}' is none yet", name.text);
-            return Err(Problem::new(&name.span, message, "declare states before 'd(...)'"));
+            return Err(Problem::new(Code::TooLate, &name.span, message, "declare states before 'd(...)'"));
         }
         // the derivatives of a signal
         let symbol = match name.text.ends_with('\'') && kind == UnknownKind::Signal {
@@ -173,7 +174,8 @@ impl System {
             Knowledge::Unknown => derivatives.highest(&name.text),
         };
         let refuse = |span: &Span, message: String| {
-            Problem::new(span, message, "this signal").help("name the derivative as a state of its own")
+            Problem::new(Code::Signal, span, message, "this signal")
+                .help("name the derivative as a state of its own")
         };
         if used > HIGHEST_DERIVATIVE {
             let message = format!(
@@ -186,12 +188,12 @@ impl System {
             Some(expr) => {
                 let Some(order) = whole(expr, 0..=HIGHEST_DERIVATIVE) else {
                     let message = format!("an order is a whole number from 0 to {HIGHEST_DERIVATIVE}");
-                    return Err(Problem::new(&expr.span, message, "this is none"));
+                    return Err(Problem::new(Code::Number, &expr.span, message, "this is none"));
                 };
                 if order < used {
                     let text = format!("{}{}", name.text, "'".repeat(used));
                     let message = format!("the file mentions {text}, which is zero by this order");
-                    return Err(Problem::new(&expr.span, message, "the order of derivatives")
+                    return Err(Problem::new(Code::Signal, &expr.span, message, "the order of derivatives")
                         .help(format!("write 'order {used}'")));
                 }
                 order
@@ -225,18 +227,22 @@ impl System {
         };
         if self.coordinates.kinds.get(&symbol) == Some(&UnknownKind::Parameter) {
             let message = format!("'{}' is a constant, and has no initial condition", name.text);
-            return Err(
-                Problem::new(&name.span, message, "declared as unknown").help("write 'param' and 'known'")
-            );
+            return Err(Problem::new(Code::Initial, &name.span, message, "declared as unknown")
+                .help("write 'param' and 'known'"));
         }
         if self.known.contains(&symbol) {
             let message = format!("it is said already that '{}' is known", name.text);
-            return Err(Problem::new(&name.span, message, "said again"));
+            return Err(Problem::new(Code::Twice, &name.span, message, "said again"));
         }
         if self.states_are_final {
             let message =
                 format!("something above is differentiated by all that is unknown, '{}' with it", name.text);
-            return Err(Problem::new(&name.span, message, "say what is known before 'd(...)'"));
+            return Err(Problem::new(
+                Code::TooLate,
+                &name.span,
+                message,
+                "say what is known before 'd(...)'",
+            ));
         }
         let mut number = None;
         if let Some(value) = &declared.value {
@@ -245,6 +251,7 @@ impl System {
             if let Some(state) = mentioned.iter().find(|symbol| self.states.contains(symbol)) {
                 let message = format!("'{}' is not known", self.symbol_name(*state));
                 return Err(Problem::new(
+                    Code::Initial,
                     &value.span,
                     message,
                     "an initial condition is made of what is known",
@@ -296,7 +303,7 @@ impl System {
             }
             _ => return Ok(()),
         };
-        Err(Problem::new(span, message, "given a rate").help(help))
+        Err(Problem::new(Code::Field, span, message, "given a rate").help(help))
     }
 
     /// The states that a field has to say something of.
@@ -366,16 +373,15 @@ impl System {
         }
         if self.longest_word().is_some_and(|longest| longest > MOST_TIED) {
             let message = format!("an output is zero, and there are more than {MOST_TIED} unknowns");
-            return Err(
-                Problem::new(&(0..0), message, "").help("write what it says as an output that is measured")
-            );
+            return Err(Problem::new(Code::ZeroOutput, &(0..0), message, "")
+                .help("write what it says as an output that is measured"));
         }
         if self.longest_word().is_some() {
             return match self.fields.iter().find(|field| field.role == Role::Input) {
                 Some(input) => {
                     let message =
                         format!("an output is zero, and so the input '{}' is not anything", input.name);
-                    Err(Problem::new(&input.span, message, "this input")
+                    Err(Problem::new(Code::ZeroOutput, &input.span, message, "this input")
                         .help("write what drives it as a known signal: known u(t), and u in the drift"))
                 }
                 None => Ok(()),
@@ -422,7 +428,7 @@ impl System {
         let Some((_, copies)) = all.into_iter().find(|(number, _)| number.to_string() == experiment) else {
             let count = self.coordinates.further_experiments + 1;
             let message = format!("there is no experiment {experiment}");
-            return Err(Problem::new(span, message, format!("the file has {count}")));
+            return Err(Problem::new(Code::Initial, span, message, format!("the file has {count}")));
         };
         let base = Expr { kind: ExprKind::Name(base.to_owned()), span: span.clone() };
         let (value, domain) = self.apart(|system| system.elaborate(&base))?;

@@ -4,6 +4,7 @@
 //! What a state is not said to become it stays. A known signal has any value at every step, and the values of later steps are
 //! symbols of their own; an unknown one moves by its differences, `w+ = w + w'`, up to the order that is assumed.
 
+use super::codes::Code;
 use super::error::Problem;
 use super::model::{Field, FieldPlace, Role, System, Time};
 use super::signals::NOWHERE;
@@ -15,10 +16,11 @@ impl System {
     pub(super) fn refuse_field(&mut self, name: &Name, time: Time) -> Result<(), Problem> {
         if name.text.contains('.') {
             let message = "a name with a dot belongs to an imported system";
-            return Err(Problem::new(&name.span, message, "choose one without"));
+            return Err(Problem::new(Code::Name, &name.span, message, "choose one without"));
         }
         if self.field(&name.text).is_some() {
             return Err(Problem::new(
+                Code::Twice,
                 &name.span,
                 format!("there is a field '{}' already", name.text),
                 "the second one",
@@ -28,7 +30,7 @@ impl System {
             && self.time != time
         {
             let message = format!("the field '{}' above is one of another time", first.name);
-            return Err(Problem::new(&name.span, message, "x' and x+ in one system")
+            return Err(Problem::new(Code::Time, &name.span, message, "x' and x+ in one system")
                 .help("x' is a rate of change, x+ the value after a step: a system has one of the two"));
         }
         self.time = time;
@@ -45,14 +47,14 @@ impl System {
         self.refuse_field(&name, Time::Discrete)?;
         if role == Role::Input {
             let message = "in discrete time an input is a known signal, and no field";
-            return Err(Problem::new(&name.span, message, "an input of steps")
+            return Err(Problem::new(Code::Time, &name.span, message, "an input of steps")
                 .help("declare 'known u(t)', and write u where the drift depends on it"));
         }
         if role == Role::Drift
             && let Some(first) = self.drift()
         {
             let message = format!("there is a drift '{}' already", self.fields[first].name);
-            return Err(Problem::new(&name.span, message, "the second one")
+            return Err(Problem::new(Code::Twice, &name.span, message, "the second one")
                 .help(format!("write 'field {}' if it is only composed with", name.text)));
         }
         let (mut successors, mut guards) = self.rates_as_written(role, &name, components)?;
@@ -89,6 +91,7 @@ impl System {
                 let name = self.symbol_name(signal.chain[0]).to_owned();
                 let message = format!("in discrete time '{name}' has no derivatives");
                 return Err(Problem::new(
+                    Code::Time,
                     &signal.span,
                     message,
                     "a known signal has any value at every step",

@@ -38,6 +38,9 @@ pub(super) struct Driven {
     states: HashMap<String, usize>,
     definitions: HashMap<String, Held>,
     fields: HashMap<String, Moves>,
+    /// What moves the states, and what the outputs hold.
+    moving: Vec<String>,
+    outputs: Vec<Held>,
     /// The highest derivatives that anything holds.
     highest: BTreeMap<usize, usize>,
     nothing: Held,
@@ -107,10 +110,14 @@ impl Driven {
                         moves.rates.insert(*place, self.union(vec![before, held]));
                     }
                 }
+                if *role != Role::Other {
+                    self.moving.push(name.text.clone());
+                }
                 self.fields.insert(name.text.clone(), moves);
             }
             Item::Output(list) | Item::Zero(list) => list.iter().for_each(|one| {
-                self.asked(&one.value);
+                let held = self.asked(&one.value);
+                self.outputs.push(held);
             }),
             Item::Assume(equations) => equations.iter().for_each(|equation| {
                 self.asked(&equation.left);
@@ -163,6 +170,20 @@ impl Driven {
                 let both = [[first, second], [second, first]];
                 let twice = both.map(|[last, before]| self.along(last, &self.along(before, &all)));
                 self.union(twice.to_vec())
+            }
+            ExprKind::Call(function, arguments) if function == "codistribution" => {
+                let order = match arguments.as_slice() {
+                    [Expr { kind: ExprKind::Number(order), .. }] => order.to_f64().value(),
+                    _ => 0.0,
+                };
+                let mut held = self.union(self.outputs.clone());
+                // beyond a few orders all that moves has been met, and each raises the derivatives of signals by one
+                for _ in 0..(order.clamp(0.0, 64.0) as usize) {
+                    let names = self.moving.iter().map(String::as_str).chain(["signals"]);
+                    let moves: Vec<&Moves> = names.filter_map(|name| self.fields.get(name)).collect();
+                    held = self.union(moves.into_iter().map(|moves| self.derived(moves, &held)).collect());
+                }
+                held
             }
             ExprKind::Call(_, arguments) => self.union(arguments.iter().map(|one| self.held(one)).collect()),
             ExprKind::RealPower(base, exponent) => self.union(vec![self.held(base), self.held(exponent)]),

@@ -1,5 +1,6 @@
 //! From syntax to meaning: expressions of the language as values in a system's graph.
 
+use super::codes::Code;
 use super::error::{Problem, nearest};
 use super::matrices::transpose;
 use super::model::{Assignment, Kind, Matrix, System, Value};
@@ -29,7 +30,7 @@ const OTHER_NAMES: [(&str, &str); 12] = [
 ];
 
 /// The functions of the language beside [`Function::ALL`].
-pub(super) const OTHER_FUNCTIONS: [&str; 21] = [
+pub(super) const OTHER_FUNCTIONS: [&str; 22] = [
     "tan",
     "cot",
     "sec",
@@ -51,6 +52,7 @@ pub(super) const OTHER_FUNCTIONS: [&str; 21] = [
     "identifiable",
     "unidentifiable",
     "solutions",
+    "codistribution",
 ];
 
 /// What a name should have been.
@@ -67,9 +69,8 @@ impl System {
     pub fn elaborate(&mut self, expr: &Expr) -> Result<Value, Problem> {
         if self.graph.len() > LARGEST_GRAPH {
             let message = format!("this grows beyond {LARGEST_GRAPH} operations");
-            return Err(
-                Problem::new(&expr.span, message, "here").help("use fewer or shorter Lie derivatives")
-            );
+            return Err(Problem::new(Code::TooLarge, &expr.span, message, "here")
+                .help("use fewer or shorter Lie derivatives"));
         }
         match &expr.kind {
             ExprKind::Number(value) => Ok(Value::Scalar(self.graph.rational(value.clone()))),
@@ -87,7 +88,7 @@ impl System {
                         Some(sum) => self.entrywise(sum, value, &term.span)?,
                     });
                 }
-                total.ok_or_else(|| Problem::new(&expr.span, "an empty sum", "here"))
+                total.ok_or_else(|| Problem::new(Code::Syntax, &expr.span, "an empty sum", "here"))
             }
             ExprKind::Product(factors) => {
                 let mut total: Option<Value> = None;
@@ -98,7 +99,7 @@ impl System {
                         Some(product) => self.multiply(product, value, *divides, &factor.span)?,
                     });
                 }
-                total.ok_or_else(|| Problem::new(&expr.span, "an empty product", "here"))
+                total.ok_or_else(|| Problem::new(Code::Syntax, &expr.span, "an empty product", "here"))
             }
             ExprKind::Power(base, exponent) => {
                 let value = self.scalar(base)?;
@@ -120,7 +121,7 @@ impl System {
                         | Value::Infinity
                 ) {
                     let message = format!("{} is not taken at a point", value.describe());
-                    return Err(Problem::new(&expr.span, message, "here")
+                    return Err(Problem::new(Code::Value, &expr.span, message, "here")
                         .help("write 'where name = value' behind the claim"));
                 }
                 let assignment = self.assignment(list)?;
@@ -138,7 +139,7 @@ impl System {
         let value = self.elaborate(expr)?;
         value.as_number().ok_or_else(|| {
             let message = format!("expected a number, found {}", value.describe());
-            Problem::new(&expr.span, message, "this")
+            Problem::new(Code::Value, &expr.span, message, "this")
         })
     }
 
@@ -146,7 +147,7 @@ impl System {
     pub fn rational(&mut self, expr: &Expr) -> Result<RBig, Problem> {
         let id = self.scalar(expr)?;
         self.graph.constant_value(id).cloned().ok_or_else(|| {
-            Problem::new(&expr.span, "expected a rational number", "this is none")
+            Problem::new(Code::Number, &expr.span, "expected a rational number", "this is none")
                 .help("such as 2, 0.5 or 1/3")
         })
     }
@@ -161,6 +162,7 @@ impl System {
             let value = self.scalar(value)?;
             if assignment.insert(symbol, value).is_some() {
                 return Err(Problem::new(
+                    Code::Twice,
                     &name.span,
                     format!("'{}' is given twice", name.text),
                     "the second time",
@@ -231,9 +233,14 @@ impl System {
             return problem;
         }
         let problem = if self.find_symbol(name).is_some() || self.definitions.contains_key(name) {
-            Problem::new(span, format!("'{name}' is no {what}"), "declared above as something else")
+            Problem::new(
+                Code::OtherKind,
+                span,
+                format!("'{name}' is no {what}"),
+                "declared above as something else",
+            )
         } else {
-            Problem::new(span, format!("unknown {what} '{name}'"), "not declared above")
+            Problem::new(Code::UnknownName, span, format!("unknown {what} '{name}'"), "not declared above")
                 .because(Cause::Unknown(name.to_owned()))
         };
         match (self.habit(name, wanted), near) {
@@ -270,6 +277,7 @@ impl System {
             match arguments {
                 [argument] => system.scalar(argument),
                 _ => Err(Problem::new(
+                    Code::Arguments,
                     span,
                     format!("'{name}' takes one argument"),
                     format!("{} here", arguments.len()),
@@ -300,6 +308,7 @@ impl System {
             }
             "L" => self.lie(arguments, span),
             "bracket" => self.bracket_column(arguments, span),
+            "codistribution" => self.codistribution(arguments, span),
             "d" => self.differential_row(arguments, span),
             "det" | "rank" => match arguments {
                 [argument] => match self.elaborate(argument)? {
@@ -307,10 +316,11 @@ impl System {
                     Value::Matrix(matrix) => self.determinant(&matrix, &argument.span),
                     other => {
                         let message = format!("'{name}' takes a matrix, not {}", other.describe());
-                        Err(Problem::new(&argument.span, message, "this").help("write [row; row; ...]"))
+                        Err(Problem::new(Code::Arguments, &argument.span, message, "this")
+                            .help("write [row; row; ...]"))
                     }
                 },
-                _ => Err(Problem::new(span, format!("'{name}' takes one matrix"), "here")),
+                _ => Err(Problem::new(Code::Arguments, span, format!("'{name}' takes one matrix"), "here")),
             },
             "transpose" | "inverse" => match arguments {
                 [argument] => match self.elaborate(argument)? {
@@ -318,10 +328,10 @@ impl System {
                     Value::Matrix(matrix) => self.inverse(&matrix, &argument.span),
                     other => {
                         let message = format!("'{name}' takes a matrix, not {}", other.describe());
-                        Err(Problem::new(&argument.span, message, "this"))
+                        Err(Problem::new(Code::Arguments, &argument.span, message, "this"))
                     }
                 },
-                _ => Err(Problem::new(span, format!("'{name}' takes one matrix"), "here")),
+                _ => Err(Problem::new(Code::Arguments, span, format!("'{name}' takes one matrix"), "here")),
             },
             "dot" | "cross" => match arguments {
                 [a, b] => match (self.elaborate(a)?, self.elaborate(b)?) {
@@ -329,14 +339,20 @@ impl System {
                     (Value::Matrix(x), Value::Matrix(y)) => self.cross(&x, &y, span),
                     (x, y) => {
                         let message = format!("'{name}' of {} and {}", x.describe(), y.describe());
-                        Err(Problem::new(span, message, "two vectors are needed").help("as in [x; y; z]"))
+                        Err(Problem::new(Code::Arguments, span, message, "two vectors are needed")
+                            .help("as in [x; y; z]"))
                     }
                 },
-                _ => Err(Problem::new(span, format!("'{name}' takes two vectors"), "here")),
+                _ => Err(Problem::new(Code::Arguments, span, format!("'{name}' takes two vectors"), "here")),
             },
             "solutions" => match arguments {
                 [expression] => Ok(Value::Solutions(self.scalar(expression)?)),
-                _ => Err(Problem::new(span, "'solutions' takes one unknown, or one expression", "here")),
+                _ => Err(Problem::new(
+                    Code::Arguments,
+                    span,
+                    "'solutions' takes one unknown, or one expression",
+                    "here",
+                )),
             },
             "pole" => match arguments {
                 [expression, factor] => {
@@ -345,6 +361,7 @@ impl System {
                     Ok(Value::Pole { expression, factor })
                 }
                 _ => Err(Problem::new(
+                    Code::Arguments,
                     span,
                     "'pole' takes an expression and what vanishes at the pole",
                     "here",
@@ -358,7 +375,8 @@ impl System {
                     return found;
                 }
                 let known = super::vocabulary::functions();
-                let problem = Problem::new(span, format!("unknown function '{name}'"), "here");
+                let problem =
+                    Problem::new(Code::UnknownName, span, format!("unknown function '{name}'"), "here");
                 let other = OTHER_NAMES.into_iter().find(|(other, _)| *other == name);
                 let is_value = self.find_symbol(name).is_some() || self.definitions.contains_key(name);
                 Err(match (other, nearest(name, known)) {
@@ -377,7 +395,7 @@ impl System {
     /// entry is a number wherever a number is meant.
     fn differential_row(&mut self, arguments: &[Expr], span: &Span) -> Result<Value, Problem> {
         let Some((first, names)) = arguments.split_first() else {
-            return Err(Problem::new(span, "'d' takes an expression", "here"));
+            return Err(Problem::new(Code::Arguments, span, "'d' takes an expression", "here"));
         };
         let expression = self.scalar(first)?;
         let states = self.states_of(names, span)?;
@@ -391,7 +409,12 @@ impl System {
         for name in names {
             let id = self.scalar(name)?;
             let Some(symbol) = self.graph.as_symbol(id) else {
-                return Err(Problem::new(&name.span, "expected the name of a state", "this is none"));
+                return Err(Problem::new(
+                    Code::OtherKind,
+                    &name.span,
+                    "expected the name of a state",
+                    "this is none",
+                ));
             };
             states.push(symbol);
         }
@@ -400,7 +423,7 @@ impl System {
             self.states_are_final = true;
         }
         if states.is_empty() {
-            return Err(Problem::new(span, "there is no state to differentiate by", "here")
+            return Err(Problem::new(Code::Field, span, "there is no state to differentiate by", "here")
                 .help("declare 'state x, ...'"));
         }
         Ok(states)

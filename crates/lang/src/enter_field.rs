@@ -1,5 +1,6 @@
 //! A field as it stands in the file: what it says of each state, and where that exists.
 
+use super::codes::Code;
 use super::declare::in_words;
 use super::elaborate::Wanted;
 use super::error::Problem;
@@ -26,7 +27,7 @@ impl System {
             && let Some(first) = self.drift()
         {
             let message = format!("there is a drift '{}' already", self.fields[first].name);
-            return Err(Problem::new(&name.span, message, "the second one").help(format!(
+            return Err(Problem::new(Code::Twice, &name.span, message, "the second one").help(format!(
                 "write 'input {0}' if it is driven, 'field {0}' if it is only differentiated along",
                 name.text
             )));
@@ -37,7 +38,7 @@ impl System {
         if let (Some(missing), false) = (missing, others_are_zero) {
             let message =
                 format!("the field '{}' does not say how '{}' moves", name.text, self.symbol_name(missing));
-            return Err(Problem::new(&name.span, message, "this field")
+            return Err(Problem::new(Code::Field, &name.span, message, "this field")
                 .help("end it with: others' = 0, if the states that it does not name stand still"));
         }
         let written = self.written_components(components);
@@ -100,7 +101,7 @@ impl System {
             self.refuse_rate(role, symbol, &state.span)?;
             if !moved.insert(symbol) {
                 let message = format!("'{}' is given twice in the field '{}'", state.text, name.text);
-                return Err(Problem::new(&state.span, message, "the second time"));
+                return Err(Problem::new(Code::Twice, &state.span, message, "the second time"));
             }
             let (rate, domain) = self.apart(|system| system.scalar(expr))?;
             rates.push((symbol, rate));

@@ -1,5 +1,6 @@
 //! What can be wrong with a file, shown at its place.
 
+use super::codes::Code;
 use super::excerpt::{Excerpt, message};
 use super::problems::Cause;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
@@ -10,6 +11,8 @@ use std::sync::Arc;
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{message}")]
 pub struct ReadError {
+    /// What kind of mistake it is.
+    pub code: Code,
     /// What is wrong.
     pub message: String,
     /// The text, with its name.
@@ -27,7 +30,11 @@ pub struct ReadError {
 /// What is rendered is the excerpt, and never the text itself.
 impl Diagnostic for ReadError {
     fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        self.help.as_ref().map(|help| Box::new(help) as Box<dyn Display>)
+        let more = format!("'palmistry explain {}' has an example", self.code.id());
+        Some(Box::new(match &self.help {
+            Some(help) => format!("{help}\n{more}"),
+            None => more,
+        }))
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
@@ -64,6 +71,8 @@ pub(crate) fn line_starts(text: &str) -> Vec<usize> {
 /// An error without its text: what the elaborator knows.
 #[derive(Debug)]
 pub struct Problem {
+    /// What kind of mistake it is.
+    pub code: Code,
     /// What is wrong, in a sentence.
     pub message: String,
     /// Where, in bytes of the text.
@@ -78,8 +87,14 @@ pub struct Problem {
 
 impl Problem {
     /// A problem at a place, with no advice.
-    pub fn new(span: &std::ops::Range<usize>, message: impl Into<String>, label: impl Into<String>) -> Self {
+    pub fn new(
+        code: Code,
+        span: &std::ops::Range<usize>,
+        message: impl Into<String>,
+        label: impl Into<String>,
+    ) -> Self {
         Problem {
+            code,
             message: message.into(),
             span: span.clone(),
             label: label.into(),
@@ -118,6 +133,7 @@ impl Problem {
             label = "the text ends after this".to_owned();
         }
         ReadError {
+            code: self.code,
             message: message(&self.message),
             excerpt: Box::new(Excerpt::new(source.name(), text, begin..end)),
             source_code: source.clone(),

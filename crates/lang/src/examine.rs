@@ -1,5 +1,6 @@
 //! From a file or a text to a system, or to all that is wrong with it.
 
+use super::codes::Code;
 use super::error::{Problem, ReadError};
 use super::imports::Reading;
 use super::model::{System, Value};
@@ -41,7 +42,7 @@ impl System {
             true => error,
             false => {
                 let name = name_of(path);
-                Problem::new(&(0..0), no_proof_file(path), "")
+                Problem::new(Code::File, &(0..0), no_proof_file(path), "")
                     .help("a proof file begins with an entry")
                     .locate(&name, "")
             }
@@ -68,7 +69,7 @@ impl System {
             }
             Err(message) => Examination {
                 system: None,
-                problems: vec![Problem::new(&(0..0), message, "").locate(&name, "")],
+                problems: vec![Problem::new(Code::File, &(0..0), message, "").locate(&name, "")],
                 more: false,
                 files: BTreeSet::from([path.to_owned()]),
             },
@@ -143,17 +144,16 @@ impl Examination {
     pub fn into_result(self) -> Result<System, ReadError> {
         match self.system {
             Some(system) => Ok(system),
-            None => Err(self
-                .problems
-                .into_iter()
-                .next()
-                .unwrap_or_else(|| Problem::new(&(0..0), "the file cannot be read", "").locate("", ""))),
+            None => Err(self.problems.into_iter().next().unwrap_or_else(|| {
+                Problem::new(Code::File, &(0..0), "the file cannot be read", "").locate("", "")
+            })),
         }
     }
 }
 
 pub(super) fn expected(error: palmistry_math::expression::Expected) -> Problem {
     Problem {
+        code: Code::Syntax,
         message: error.to_string(),
         span: error.at..error.at + 1,
         label: "here".to_owned(),

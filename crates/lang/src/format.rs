@@ -1,6 +1,7 @@
 //! The normal form of a proof file: blanks at the beginnings and ends of lines, columns of `=` and `in`, empty lines. Nothing
 //! else is touched: every sign, every comment and every text in quotation marks stays as it is, byte for byte.
 
+use super::codes::Code;
 use super::error::{Problem, ReadError};
 use super::grammar::{ENTRIES, parse_file};
 use super::signals;
@@ -19,7 +20,7 @@ pub fn format_text(name: &str, text: &str) -> Result<String, ReadError> {
     let located = |problem: Problem| problem.locate(name, &text);
     refuse_reordering(&text).map_err(located)?;
     parse_file(&text).map_err(|error| {
-        let problem = Problem::new(&(error.at..error.at + 1), error.to_string(), "here");
+        let problem = Problem::new(Code::Syntax, &(error.at..error.at + 1), error.to_string(), "here");
         located(match error.help {
             Some(help) => problem.help(help),
             None => problem,
@@ -34,7 +35,7 @@ pub fn format_text(name: &str, text: &str) -> Result<String, ReadError> {
     if signs(&formatted) == signs(&text) && parse_file(&formatted).is_ok() {
         Ok(formatted)
     } else {
-        Err(located(Problem::new(&(0..0), "this file has no normal form", "left as it is")))
+        Err(located(Problem::new(Code::File, &(0..0), "this file has no normal form", "left as it is")))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Functions that are made of others, and powers that are not integers: what they stand for, and what they need.
 
+use super::codes::Code;
 use super::error::Problem;
 use super::model::{System, Value};
 use dashu::rational::RBig;
@@ -26,7 +27,12 @@ impl System {
                 _ => "two arguments or more",
             };
             let message = format!("'{name}' takes {wanted}");
-            return Some(Err(Problem::new(span, message, format!("{} here", arguments.len()))));
+            return Some(Err(Problem::new(
+                Code::Arguments,
+                span,
+                message,
+                format!("{} here", arguments.len()),
+            )));
         }
         Some(self.composed_of(name, arguments))
     }
@@ -87,7 +93,7 @@ impl System {
                 let count = i32::try_from(count.clone()).ok().filter(|n| n.abs() <= LARGEST_EXPONENT);
                 let Some(count) = count else {
                     let message = format!("an exponent of at most {LARGEST_EXPONENT} is expected");
-                    return Err(Problem::new(span, message, "here"));
+                    return Err(Problem::new(Code::Number, span, message, "here"));
                 };
                 let mut base = base;
                 if !whole {

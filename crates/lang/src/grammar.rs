@@ -305,16 +305,26 @@ fn claim(input: &mut Text<'_>) -> Read<Item> {
     let remark = opt(quoted).parse_next(input)?;
     let body = ClaimBody::Claim { statement, expected };
     let (id, span) = (id.text, id.span);
-    Ok(Item::Claim(Box::new(ClaimSyntax { id, span, body, basis, follows: None, remark })))
+    Ok(Item::Claim(Box::new(ClaimSyntax {
+        id,
+        span,
+        body,
+        basis,
+        follows: None,
+        passage: None,
+        remark,
+        conclusion: None,
+    })))
 }
 
 /// `erratum`, `damaged`, `scan`, `convention` and `loose`.
 fn faulty(input: &mut Text<'_>) -> Read<Item> {
     let entry = fault(input)?;
     let remark = opt(quoted).parse_next(input)?;
-    let (id, span, follows) = (entry.id.text, entry.id.span, entry.follows);
+    let conclusion = opt(preceded(keyword("conclusion"), cut_err(quoted))).parse_next(input)?;
+    let (id, span, follows, passage) = (entry.id.text, entry.id.span, entry.follows, entry.passage);
     let (body, basis) = (entry.body, Basis::Derived);
-    Ok(Item::Claim(Box::new(ClaimSyntax { id, span, body, basis, follows, remark })))
+    Ok(Item::Claim(Box::new(ClaimSyntax { id, span, body, basis, follows, passage, remark, conclusion })))
 }
 
 /// `definition ID: "text"` and `undecided ID: "reason"`.
@@ -327,11 +337,34 @@ fn remark_only(input: &mut Text<'_>) -> Read<Item> {
     let body = if open { ClaimBody::Open { reason: text } } else { ClaimBody::Definition { text } };
     let (id, span) = (id.text, id.span);
     let basis = Basis::Derived;
-    Ok(Item::Claim(Box::new(ClaimSyntax { id, span, body, basis, follows: None, remark: None })))
+    Ok(Item::Claim(Box::new(ClaimSyntax {
+        id,
+        span,
+        body,
+        basis,
+        follows: None,
+        passage: None,
+        remark: None,
+        conclusion: None,
+    })))
 }
 
-const ENTRY: &str = "one of: system, use, state, param, angle, assume, let, drift, input, field, output, sample, claim, erratum, \
+const ENTRY: &str = "one of: system, use, state, param, angle, assume, latex, let, drift, input, field, output, sample, claim, erratum, \
                      damaged, scan, convention, loose, definition, undecided, set, pole, map, line, reduction, known, unknown, initial, experiments";
+
+/// How names look in a formula: `latex Fyf "F_{yf}"`.
+fn looks(input: &mut Text<'_>) -> Read<Item> {
+    keyword("latex").parse_next(input)?;
+    let one = |input: &mut Text<'_>| -> Read<(Name, String, Span)> {
+        let name = name(input)?;
+        let begin = input.current_token_start();
+        let text = quoted(input)?;
+        Ok((name, text, begin..input.current_token_start()))
+    };
+    let list = cut_err(separated(1.., one, sign(",")))
+        .context("a name and how it looks, as in latex Fyf \"F_{yf}\"");
+    list.map(Item::Looks).parse_next(input)
+}
 
 fn item(input: &mut Text<'_>) -> Read<Vec<Item>> {
     let one = alt((
@@ -342,6 +375,7 @@ fn item(input: &mut Text<'_>) -> Read<Vec<Item>> {
         alt((
             preceded(keyword("angle"), names).map(Item::Angle),
             preceded(keyword("assume"), conditions).map(Item::Assume),
+            looks,
         )),
         field,
         alt((zero_outputs, outputs)),
@@ -351,9 +385,10 @@ fn item(input: &mut Text<'_>) -> Read<Vec<Item>> {
 }
 
 /// The words that begin an entry.
-pub(super) const ENTRIES: [&str; 29] = [
+pub(super) const ENTRIES: [&str; 30] = [
     "system",
     "assume",
+    "latex",
     "use",
     "state",
     "param",

@@ -1,6 +1,7 @@
 //! A file that imports another one: both are read into one graph, what the other declares goes under its alias, and none is read
 //! twice, however many import it.
 
+use super::codes::Code;
 use super::domain::Domain;
 use super::error::Problem;
 use super::model::{Field, FieldPlace, Kind, Matrix, SymbolInfo, System, Value};
@@ -43,7 +44,7 @@ impl System {
         span: &Span,
         reading: &mut Reading,
     ) -> Result<(), Problem> {
-        let refuse = |message: String| Problem::new(span, message, "this file");
+        let refuse = |message: String| Problem::new(Code::Import, span, message, "this file");
         reading.files.insert(path.to_owned());
         let place =
             file::identity(path).map_err(|e| refuse(format!("cannot read {}: {e}", shown_path(path))))?;
@@ -55,13 +56,12 @@ impl System {
         }
         if alias.text.contains('.') {
             let message = "a name with a dot belongs to what an imported system imports";
-            return Err(Problem::new(&alias.span, message, "choose one without"));
+            return Err(Problem::new(Code::Name, &alias.span, message, "choose one without"));
         }
         if self.aliases.iter().any(|(known, _)| *known == alias.text) {
             let message = format!("'{}' is the name of an imported system already", alias.text);
-            return Err(
-                Problem::new(&alias.span, message, "the second one").help("choose another name for this one")
-            );
+            return Err(Problem::new(Code::Import, &alias.span, message, "the second one")
+                .help("choose another name for this one"));
         }
         self.aliases.push((alias.text.clone(), path.to_owned()));
         let other = match reading.done.get(&place) {
@@ -90,7 +90,7 @@ impl System {
                 let hidden = self.graph.symbol_name(*symbol);
                 let message =
                     format!("'{hidden}' is a definition above, and a symbol of {}", shown_path(path));
-                return Err(Problem::new(span, message, "imported here")
+                return Err(Problem::new(Code::Import, span, message, "imported here")
                     .help("choose another name for the definition"));
             }
             match self.symbols.entry(*symbol) {
@@ -147,7 +147,7 @@ impl System {
     /// Reads a file that was not imported yet. The graph comes back here.
     fn import_anew(&mut self, path: &Path, span: &Span, reading: &mut Reading) -> Result<System, Problem> {
         let name = whole_name(path);
-        let text = load(path).map_err(|message| Problem::new(span, message, "this file"))?;
+        let text = load(path).map_err(|message| Problem::new(Code::Import, span, message, "this file"))?;
         let text = with_plain_line_ends(&text);
         let folder = path.parent().unwrap_or(Path::new(""));
         let graph = std::mem::take(&mut self.graph);
@@ -158,14 +158,19 @@ impl System {
             // what was declared above the import is in it
             self.graph = *graph;
             let first = problems.into_found().into_iter().next();
-            let problem = first.unwrap_or_else(|| Problem::new(&(0..0), "the file cannot be read", ""));
+            let problem =
+                first.unwrap_or_else(|| Problem::new(Code::Import, &(0..0), "the file cannot be read", ""));
             if !is_a_proof_file(path, &text) {
-                return Problem::new(span, no_proof_file(path), "imported here");
+                return Problem::new(Code::Import, span, no_proof_file(path), "imported here");
             }
             let inner = problem.locate(&name, &text);
             let (line, column) = inner.line_and_column();
-            let problem =
-                Problem::new(span, format!("{name}:{line}:{column}: {}", inner.message), "imported here");
+            let problem = Problem::new(
+                Code::Import,
+                span,
+                format!("{name}:{line}:{column}: {}", inner.message),
+                "imported here",
+            );
             match inner.help {
                 Some(help) => problem.help(help),
                 None => problem,

@@ -8,7 +8,10 @@
 
 #![warn(missing_docs)]
 
+mod as_written;
 mod assume;
+mod codes;
+mod codistribution;
 mod comparable;
 mod components;
 mod declare;
@@ -49,7 +52,10 @@ mod visible;
 pub mod vocabulary;
 mod written;
 
+pub use as_written::{FieldAsWritten, SystemAsWritten};
+pub use codes::Code;
 #[doc(hidden)]
+pub use codes::ERRORS;
 pub use determinant::determinant;
 pub use dimension::{Base, Dimension, ScaledUnit, scaled_unit};
 #[doc(hidden)]
@@ -62,7 +68,9 @@ pub use format::format_text;
 pub use given::{GivenError, given_number};
 #[doc(hidden)]
 pub use grammar::parse_statement;
-pub use model::{Assignment, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Time, Value};
+pub use model::{
+    Assignment, Field, FieldRole, Kind, Looks, Matrix, Range, Role, SymbolInfo, System, Time, Value,
+};
 #[doc(hidden)]
 pub use outline::{Declaration, DeclarationKind, Outline, without_claims};
 #[doc(hidden)]

@@ -5,6 +5,7 @@
 //! `L_[f,g] h = L_f L_g h - L_g L_f h` (Isidori, Nonlinear Control Systems, 3rd edition, 1995, section 1.2, and Nijmeijer
 //! and van der Schaft, Nonlinear Dynamical Control Systems, 1990, section 2.2.2, have the same).
 
+use super::codes::Code;
 use super::elaborate::{LARGEST_GRAPH, Wanted};
 use super::error::Problem;
 use super::model::{Matrix, Role, System, Value};
@@ -30,12 +31,11 @@ impl System {
     /// `L(f, e)`, or `L(f, g, e)` for the Lie derivative along `f` of the one along `g`.
     pub(super) fn lie(&mut self, arguments: &[Expr], span: &Span) -> Result<Value, Problem> {
         let [fields @ .., last] = arguments else {
-            return Err(Problem::new(span, "'L' takes a field and an expression", "here"));
+            return Err(Problem::new(Code::Arguments, span, "'L' takes a field and an expression", "here"));
         };
         if fields.is_empty() {
-            return Err(
-                Problem::new(span, "'L' takes a field and an expression", "here").help("as in L(f, s1)")
-            );
+            return Err(Problem::new(Code::Arguments, span, "'L' takes a field and an expression", "here")
+                .help("as in L(f, s1)"));
         }
         let steps = fields.iter().any(|field| match &field.kind {
             ExprKind::Name(name) => self.field(name).is_some_and(|field| field.derivation.composes()),
@@ -46,9 +46,11 @@ impl System {
         }
         let mut value = self.elaborate(last)?;
         for field in fields.iter().rev() {
-            self.refuse_the_last_derivative(field, &value, span)?;
             value = match &field.kind {
-                ExprKind::Name(name) => self.along_named(name, value, (&field.span, &last.span))?,
+                ExprKind::Name(name) => {
+                    self.refuse_the_last_derivative(name, &value, span)?;
+                    self.along_named(name, value, (&field.span, &last.span))?
+                }
                 _ => {
                     let rates = self.rates_of(field, 0)?;
                     self.along_rates(&rates, value, &last.span)?
@@ -62,9 +64,13 @@ impl System {
     /// The drift leads a signal to its next derivative, and the last one that the file comes to has none: it would count as constant. Of a
     /// known signal what a file says itself never meets this (`driven.rs`), and what is asked of it from outside may; of an unknown one that
     /// is an assumption, which a statement rests on only where the file makes it (`order 1`).
-    fn refuse_the_last_derivative(&self, field: &Expr, value: &Value, span: &Span) -> Result<(), Problem> {
-        let ExprKind::Name(name) = &field.kind else { return Ok(()) };
-        let Some(drift) = self.field(name).filter(|field| field.role == Role::Drift) else { return Ok(()) };
+    pub(super) fn refuse_the_last_derivative(
+        &self,
+        field: &str,
+        value: &Value,
+        span: &Span,
+    ) -> Result<(), Problem> {
+        let Some(drift) = self.field(field).filter(|field| field.role == Role::Drift) else { return Ok(()) };
         let steps = drift.derivation.composes();
         let nodes = match value {
             Value::Scalar(node) => vec![*node],
@@ -101,7 +107,7 @@ impl System {
                 ),
             ),
         };
-        Err(Problem::new(span, message, "this holds it").help(help))
+        Err(Problem::new(Code::Signal, span, message, "this holds it").help(help))
     }
 
     /// The same along maps: what is after the last step has to exist there, and each step at the state before it.
@@ -112,42 +118,56 @@ impl System {
             let ExprKind::Name(name) = &field.kind else {
                 let message =
                     "maps have no bracket: 'L' takes the names of maps, and what is composed with them";
-                return Err(Problem::new(&field.span, message, "this"));
+                return Err(Problem::new(Code::Time, &field.span, message, "this"));
             };
-            self.refuse_the_last_derivative(field, &value, span)?;
-            let Some(found) = self.field(name) else {
+            if self.field(name).is_none() {
                 return Err(self.unknown(name, &field.span, Wanted::Field));
-            };
-            let needs: Vec<Guard> = found.guards.iter().flatten().copied().collect();
-            let step = |system: &mut System, id: NodeId| {
-                let mut graph = std::mem::take(&mut system.graph);
-                let after = system.field_mut(name).map_or(id, |field| field.derivation.apply(&mut graph, id));
-                system.graph = graph;
-                after
-            };
-            guards = guards
-                .into_iter()
-                .map(|guard| Guard { node: step(self, guard.node), need: guard.need })
-                .chain(needs)
-                .collect();
-            value = self.map(value, &last.span, step)?;
-            self.refuse_growth(span)?;
+            }
+            (value, guards) = self.after_step(name, (value, guards), span)?;
         }
         self.need_all(guards);
         Ok(value)
     }
 
-    fn refuse_growth(&self, span: &Span) -> Result<(), Problem> {
+    /// A value after a step of a map that the file has, and what it needs to exist.
+    pub(super) fn after_step(
+        &mut self,
+        map: &str,
+        (value, guards): (Value, Vec<Guard>),
+        span: &Span,
+    ) -> Result<(Value, Vec<Guard>), Problem> {
+        self.refuse_the_last_derivative(map, &value, span)?;
+        let needs = self.field(map).into_iter().flat_map(|found| found.guards.iter().flatten().copied());
+        let needs: Vec<Guard> = needs.collect();
+        let step = |system: &mut System, id: NodeId| {
+            let mut graph = std::mem::take(&mut system.graph);
+            let after = system.field_mut(map).map_or(id, |field| field.derivation.apply(&mut graph, id));
+            system.graph = graph;
+            after
+        };
+        let moved = guards.into_iter().map(|guard| Guard { node: step(self, guard.node), need: guard.need });
+        let guards = moved.chain(needs).collect();
+        let value = self.map(value, span, step)?;
+        self.refuse_growth(span)?;
+        Ok((value, guards))
+    }
+
+    pub(super) fn refuse_growth(&self, span: &Span) -> Result<(), Problem> {
         if self.graph.len() > LARGEST_GRAPH {
             let message = format!("this grows beyond {LARGEST_GRAPH} operations");
-            return Err(Problem::new(span, message, "here"));
+            return Err(Problem::new(Code::TooLarge, span, message, "here"));
         }
         Ok(())
     }
 
     /// The derivative along a field of the file, which keeps what it has differentiated; the spans are those of the field
     /// and of what is differentiated.
-    fn along_named(&mut self, name: &str, value: Value, spans: (&Span, &Span)) -> Result<Value, Problem> {
+    pub(super) fn along_named(
+        &mut self,
+        name: &str,
+        value: Value,
+        spans: (&Span, &Span),
+    ) -> Result<Value, Problem> {
         if self.field_mut(name).is_none() {
             return Err(self.unknown(name, spans.0, Wanted::Field));
         }
@@ -192,7 +212,7 @@ impl System {
             ExprKind::Name(name) => match self.field(name) {
                 Some(found) if found.derivation.composes() => {
                     let message = format!("'{name}' is a map, and maps have no bracket");
-                    Err(Problem::new(&field.span, message, "this one"))
+                    Err(Problem::new(Code::Time, &field.span, message, "this one"))
                 }
                 Some(found) => {
                     let parts = found.components.iter().zip(&found.guards);
@@ -209,13 +229,18 @@ impl System {
                 }
                 [_, _] => {
                     let message = format!("brackets within brackets, more than {DEEPEST_BRACKET} deep");
-                    Err(Problem::new(&field.span, message, "this one"))
+                    Err(Problem::new(Code::TooLarge, &field.span, message, "this one"))
                 }
-                _ => Err(Problem::new(&field.span, "'bracket' takes two fields", "here")
+                _ => Err(Problem::new(Code::Arguments, &field.span, "'bracket' takes two fields", "here")
                     .help("as in L(bracket(f, g), x)")),
             },
-            _ => Err(Problem::new(&field.span, "expected the name of a field", "this is none")
-                .help("or the bracket of two, as in bracket(f, g)")),
+            _ => Err(Problem::new(
+                Code::OtherKind,
+                &field.span,
+                "expected the name of a field",
+                "this is none",
+            )
+            .help("or the bracket of two, as in bracket(f, g)")),
         }
     }
 
@@ -225,7 +250,9 @@ impl System {
         for (field, other) in fields.into_iter().zip([second, first]) {
             let entries: Vec<NodeId> = other.values().map(|rate| rate.value).collect();
             let components = Value::Matrix(Matrix { rows: entries.len(), columns: 1, entries });
-            self.refuse_the_last_derivative(field, &components, span)?;
+            if let ExprKind::Name(name) = &field.kind {
+                self.refuse_the_last_derivative(name, &components, span)?;
+            }
         }
         let (mut along_first, mut along_second) = (derivation_along(first), derivation_along(second));
         let moved: BTreeSet<Symbol> = first.keys().chain(second.keys()).copied().collect();
@@ -256,7 +283,8 @@ impl System {
     /// `bracket(f, g)` as a column of as many entries as there are states; or `bracket(f, g, x, y)`, only those of `x` and `y`.
     pub(super) fn bracket_column(&mut self, arguments: &[Expr], span: &Span) -> Result<Value, Problem> {
         let [first, second, names @ ..] = arguments else {
-            return Err(Problem::new(span, "'bracket' takes two fields", "here").help("as in bracket(f, g)"));
+            return Err(Problem::new(Code::Arguments, span, "'bracket' takes two fields", "here")
+                .help("as in bracket(f, g)"));
         };
         let rates = self.bracket([first, second], 1, span)?;
         let states = self.states_of(names, span)?;

@@ -1,5 +1,6 @@
 //! Calculating with matrices of expressions: sums, products, blocks, inverse, the products of vectors.
 
+use super::codes::Code;
 use super::determinant::{LARGEST, determinant};
 use super::error::Problem;
 use super::model::{Matrix, System, Value};
@@ -14,11 +15,11 @@ impl System {
     pub fn determinant(&mut self, matrix: &Matrix, span: &Span) -> Result<Value, Problem> {
         if matrix.rows != matrix.columns {
             let message = format!("the determinant of a matrix of {} by {}", matrix.rows, matrix.columns);
-            return Err(Problem::new(span, message, "this is not square"));
+            return Err(Problem::new(Code::Shape, span, message, "this is not square"));
         }
         if matrix.rows > LARGEST {
             let message = format!("a determinant of {} rows; at most {LARGEST} are expanded", matrix.rows);
-            return Err(Problem::new(span, message, "this"));
+            return Err(Problem::new(Code::TooLarge, span, message, "this"));
         }
         Ok(Value::Scalar(determinant(&mut self.graph, matrix)))
     }
@@ -26,7 +27,7 @@ impl System {
     /// The inverse by cofactors over the determinant: exact, and short for the small matrices of papers.
     pub(super) fn inverse(&mut self, matrix: &Matrix, span: &Span) -> Result<Value, Problem> {
         let Value::Scalar(whole) = self.determinant(matrix, span)? else {
-            return Err(Problem::new(span, "no determinant", "here"));
+            return Err(Problem::new(Code::Shape, span, "no determinant", "here"));
         };
         let n = matrix.rows;
         let mut entries = Vec::with_capacity(n * n);
@@ -54,7 +55,7 @@ impl System {
         if !vectors || a.entries.len() != b.entries.len() {
             let message =
                 format!("a matrix of {} by {} and one of {} by {}", a.rows, a.columns, b.rows, b.columns);
-            return Err(Problem::new(span, message, "'dot' takes two vectors of one length"));
+            return Err(Problem::new(Code::Shape, span, message, "'dot' takes two vectors of one length"));
         }
         let products: Vec<NodeId> =
             a.entries.iter().zip(&b.entries).map(|(x, y)| self.graph.mul(*x, *y)).collect();
@@ -78,7 +79,12 @@ impl System {
             _ => {
                 let message =
                     format!("a matrix of {} by {} and one of {} by {}", a.rows, a.columns, b.rows, b.columns);
-                Err(Problem::new(span, message, "'cross' takes two vectors of length two or three"))
+                Err(Problem::new(
+                    Code::Shape,
+                    span,
+                    message,
+                    "'cross' takes two vectors of length two or three",
+                ))
             }
         }
     }
@@ -95,12 +101,12 @@ impl System {
                     Value::Matrix(matrix) => matrix,
                     other => {
                         let message = format!("{} cannot stand in a matrix", other.describe());
-                        return Err(Problem::new(&block.span, message, "this"));
+                        return Err(Problem::new(Code::Value, &block.span, message, "this"));
                     }
                 };
                 if blocks.first().is_some_and(|first: &Matrix| first.rows != matrix.rows) {
                     let message = format!("a block of {} rows beside one of {}", matrix.rows, blocks[0].rows);
-                    return Err(Problem::new(&block.span, message, "this block"));
+                    return Err(Problem::new(Code::Shape, &block.span, message, "this block"));
                 }
                 blocks.push(matrix);
             }
@@ -108,7 +114,7 @@ impl System {
             let begin = row.first().map_or(span, |first| &first.span);
             if *width.get_or_insert(columns) != columns {
                 let message = format!("a row of {columns} entries below one of {}", width.unwrap_or(0));
-                return Err(Problem::new(begin, message, "this row"));
+                return Err(Problem::new(Code::Shape, begin, message, "this row"));
             }
             for line in 0..blocks.first().map_or(0, |block| block.rows) {
                 for block in &blocks {
@@ -119,6 +125,7 @@ impl System {
             }
             if entries.len() > LARGEST_MATRIX {
                 return Err(Problem::new(
+                    Code::TooLarge,
                     span,
                     format!("a matrix of more than {LARGEST_MATRIX} entries"),
                     "here",
@@ -143,7 +150,7 @@ impl System {
             }
             other => {
                 let message = format!("{} cannot be calculated with", other.describe());
-                Err(Problem::new(span, message, "it stands alone on one side of '='"))
+                Err(Problem::new(Code::Value, span, message, "it stands alone on one side of '='"))
             }
         }
     }
@@ -158,7 +165,7 @@ impl System {
             }
             (x, y) => {
                 let message = format!("{} and {} cannot be added", x.describe(), y.describe());
-                Err(Problem::new(span, message, "this"))
+                Err(Problem::new(Code::Shape, span, message, "this"))
             }
         }
     }
@@ -209,7 +216,7 @@ impl System {
             (x, y, divides) => {
                 let verb = if divides { "divided" } else { "multiplied" };
                 let message = format!("{} cannot be {verb} by {}", x.describe(), y.describe());
-                Err(Problem::new(span, message, "this"))
+                Err(Problem::new(Code::Shape, span, message, "this"))
             }
         }
     }

@@ -1,5 +1,6 @@
 //! What a system is.
 
+use super::codes::Code;
 use super::dimension::{Dimensions, Import};
 use super::domain::Domain;
 use super::error::Problem;
@@ -8,6 +9,7 @@ use super::unknowns::Coordinates;
 use super::views::{LineView, MapView, NamedSet, ReductionTo};
 use super::written::{Insert, Mention, Place, Scope, Written, places_in_equation};
 use dashu::rational::RBig;
+use palmistry_math::expression::notation::FormulaName;
 use palmistry_math::expression::syntax::{Equation, Span};
 use palmistry_math::expression::{Derivation, Graph, Guard, NodeId, Symbol, gradient};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
@@ -16,6 +18,9 @@ use std::sync::Arc;
 
 /// The rank of a dense matrix of so many columns takes half a minute and 3 GB.
 const MOST_COLUMNS: usize = 10_000;
+
+/// How names look in formulas, where a file says it.
+pub type Looks = Arc<BTreeMap<String, FormulaName>>;
 
 /// What a symbol is in its system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -294,6 +299,10 @@ pub struct System {
     pub(crate) partials: HashMap<Symbol, Derivation>,
     /// Whether something has been differentiated by all states: then these are all that there are.
     pub(crate) states_are_final: bool,
+    /// Whether rows of a codistribution have been written down: then these are all fields and outputs.
+    pub(crate) motion_is_final: bool,
+    /// How names look in formulas, where the file says it.
+    pub looks: Looks,
     /// The names that this file gives to imported systems, and their files.
     pub(crate) aliases: Vec<(String, PathBuf)>,
     /// The symbols that this file gives a range to.
@@ -425,7 +434,7 @@ impl System {
                 let message = format!(
                     "ranks and estimates are of at most {MOST_COLUMNS} states and unknown parameters, and these are {count}"
                 );
-                Problem::new(&field.span, message, "what moves them")
+                Problem::new(Code::TooLarge, &field.span, message, "what moves them")
                     .help("leave out what is not asked for, or declare a parameter that is known as 'param'")
             }
             _ if moves => return None,
@@ -434,14 +443,14 @@ impl System {
                 let message = format!(
                     "'field {name}' is only differentiated along, and a rank needs a drift or an input"
                 );
-                Problem::new(&field.span, message, "neither drift nor input").help(format!(
+                Problem::new(Code::Field, &field.span, message, "neither drift nor input").help(format!(
                     "write 'drift {name}' where the states move so by themselves, 'input {name}' where something drives them"
                 ))
             }
             None => {
                 let message =
                     "a rank needs a drift or an input, and the file declares no field that moves its states";
-                Problem::new(&(0..0), message, "")
+                Problem::new(Code::Field, &(0..0), message, "")
                     .help("write \"drift f  others' = 0\" where the states rest")
             }
         };

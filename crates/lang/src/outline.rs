@@ -189,6 +189,7 @@ impl Outline {
             },
             Item::Signals { .. } | Item::State(_) | Item::Param(_) | Item::Let { .. } => {}
             Item::Angle(_)
+            | Item::Looks(_)
             | Item::Assume(_)
             | Item::Initial(_)
             | Item::Experiments { .. }

@@ -1,5 +1,6 @@
 //! From a file to a system.
 
+use super::codes::Code;
 use super::components::is_component;
 use super::declare::in_words;
 use super::dimension::{self, Declared};
@@ -15,7 +16,8 @@ use super::source_text::refuse_reordering;
 use super::syntax::{Item, OutputSyntax};
 use super::unknowns::UnknownKind;
 use super::written::{Written, in_one_line};
-use palmistry_math::expression::syntax::{Expr, ExprKind, Name};
+use palmistry_math::expression::notation::FormulaName;
+use palmistry_math::expression::syntax::{Expr, ExprKind, Name, Span};
 use palmistry_math::expression::{Graph, Guard, NodeId, Symbol};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::Path;
@@ -61,6 +63,8 @@ impl System {
             field_places: HashMap::new(),
             partials: HashMap::new(),
             states_are_final: false,
+            motion_is_final: false,
+            looks: Default::default(),
             aliases: Vec::new(),
             sampled: HashSet::new(),
             calculated: HashSet::new(),
@@ -95,7 +99,7 @@ impl System {
                 && !ids.insert(claim.id.clone())
             {
                 let message = format!("there is a claim '{}' already", claim.id);
-                problems.add(Problem::new(&claim.span, message, "the second one"))?;
+                problems.add(Problem::new(Code::Twice, &claim.span, message, "the second one"))?;
             }
             let remnant = Remnant::of(item, problems);
             if let Err(problem) = self.enter(item, folder, reading, &derivatives) {
@@ -126,7 +130,7 @@ impl System {
         self.domain = Default::default();
         if self.title.is_empty() {
             problems.add(
-                Problem::new(&(0..0), "the file does not name a system", "here")
+                Problem::new(Code::Syntax, &(0..0), "the file does not name a system", "here")
                     .help("begin with: system \"what it is\"")
                     .because(Cause::Title),
             )?;
@@ -151,12 +155,11 @@ impl System {
             Item::System { title, cite, span } => {
                 if !self.title.is_empty() {
                     let message = format!("the file describes a system already: \"{}\"", self.title);
-                    return Err(
-                        Problem::new(span, message, "the second one").help("one file holds one system")
-                    );
+                    return Err(Problem::new(Code::Twice, span, message, "the second one")
+                        .help("one file holds one system"));
                 }
                 if title.is_empty() {
-                    return Err(Problem::new(span, "a system needs a title", "this is empty"));
+                    return Err(Problem::new(Code::Syntax, span, "a system needs a title", "this is empty"));
                 }
                 (self.title, self.cite) = (title.clone(), cite.clone());
             }
@@ -195,8 +198,13 @@ impl System {
                 self.refuse_taken(name)?;
                 if self.find_symbol(&name.text).is_some() {
                     let message = format!("'{}' is a symbol of an imported system", name.text);
-                    return Err(Problem::new(&name.span, message, "a definition of this name would hide it")
-                        .help("choose another name, or declare the symbol with 'param'"));
+                    return Err(Problem::new(
+                        Code::Import,
+                        &name.span,
+                        message,
+                        "a definition of this name would hide it",
+                    )
+                    .help("choose another name, or declare the symbol with 'param'"));
                 }
                 let (value, domain) = self.apart(|system| system.elaborate(expr))?;
                 if !self.calculates_nothing(expr) {
@@ -209,7 +217,7 @@ impl System {
                 };
                 if let Some(nameless) = nameless {
                     let message = format!("{nameless} has no name");
-                    return Err(Problem::new(&expr.span, message, "claim it as it is"));
+                    return Err(Problem::new(Code::Value, &expr.span, message, "claim it as it is"));
                 }
                 self.note_component(&name.text);
                 let written = match (&value, is_component(&name.text)) {
@@ -221,6 +229,9 @@ impl System {
                 self.definition_domains.insert(name.text.clone(), domain);
                 self.definitions.insert(name.text.clone(), value);
             }
+            Item::Field { name, .. } if self.motion_is_final => {
+                return Err(late("this field", &name.span));
+            }
             Item::Field { role, name, components, is_map: true, .. } => {
                 self.enter_map(*role, name.clone(), components)?
             }
@@ -231,6 +242,9 @@ impl System {
                 let is_zero = matches!(item, Item::Zero(_));
                 let mut further = Vec::new();
                 for OutputSyntax { value: expr, is_repeated, .. } in list {
+                    if self.motion_is_final {
+                        return Err(late("this output", &expr.span));
+                    }
                     let (value, domain) = self.apart(|system| system.scalar(expr))?;
                     let guards = self.guards_of(&domain);
                     let text = match (&expr.kind, is_repeated) {
@@ -268,6 +282,7 @@ impl System {
             Item::Experiments { count, span } => self.enter_experiments(count, span)?,
             Item::Sample { ranges, avoid } => self.sample(ranges, avoid)?,
             Item::Assume(relations) => self.assume(relations)?,
+            Item::Looks(list) => self.enter_looks(list)?,
             Item::Claim(claim) => self.claims.push((**claim).clone()),
             Item::View(view) => self.enter_view(view)?,
         }
@@ -285,6 +300,29 @@ impl System {
         }
     }
 
+    fn enter_looks(&mut self, list: &[(Name, String, Span)]) -> Result<(), Problem> {
+        for (name, latex, span) in list {
+            let is_known = self.find_symbol(&name.text).is_some()
+                || self.definitions.contains_key(&name.text)
+                || self.field(&name.text).is_some()
+                || self.vectors.contains(&name.text);
+            if !is_known {
+                return Err(self.unknown(&name.text, &name.span, Wanted::Name));
+            }
+            let Some(look) = FormulaName::of_latex(latex) else {
+                let message = format!("'{latex}' is no letter with accents and an index");
+                return Err(Problem::new(Code::View, span, message, "how it looks").help(
+                    "as in \"F_{yf}\", \"\\alpha_f\" or \"\\dot{x}_1\"; words stand in \\mathrm{...}",
+                ));
+            };
+            if Arc::make_mut(&mut self.looks).insert(name.text.clone(), look).is_some() {
+                let message = format!("'{}' has a look already", name.text);
+                return Err(Problem::new(Code::Twice, &name.span, message, "the second time"));
+            }
+        }
+        Ok(())
+    }
+
     pub(super) fn refuse_taken(&self, name: &Name) -> Result<(), Problem> {
         let declared = self.find_symbol(&name.text).and_then(|symbol| self.symbols.get(&symbol));
         let taken = declared.is_some_and(|info| info.kind != Kind::Imported)
@@ -292,6 +330,7 @@ impl System {
             || ["pi", "rank", "others"].contains(&name.text.as_str());
         if taken {
             return Err(Problem::new(
+                Code::Twice,
                 &name.span,
                 format!("'{}' has a meaning already", name.text),
                 "declared again",
@@ -299,12 +338,12 @@ impl System {
         }
         if name.text.contains('.') {
             let message = "a name with a dot belongs to an imported system";
-            return Err(Problem::new(&name.span, message, "choose one without"));
+            return Err(Problem::new(Code::Name, &name.span, message, "choose one without"));
         }
         if name.text.contains(['\'', '@']) {
             let message =
                 "derivatives of signals, and what belongs to further experiments, come with what they are of";
-            return Err(Problem::new(&name.span, message, "choose a name without"));
+            return Err(Problem::new(Code::Name, &name.span, message, "choose a name without"));
         }
         self.refuse_mixed(name)
     }
@@ -332,6 +371,7 @@ impl System {
             if range.low > range.high {
                 let span = low.span.start..high.span.end;
                 return Err(Problem::new(
+                    Code::Range,
                     &span,
                     format!("the range of '{}' is empty", name.text),
                     "low above high",
@@ -340,7 +380,7 @@ impl System {
             // a range that came with an import may be replaced, one of this file not
             if !self.sampled.insert(symbol) {
                 let message = format!("'{}' has a range already", name.text);
-                return Err(Problem::new(&name.span, message, "the second one"));
+                return Err(Problem::new(Code::Twice, &name.span, message, "the second one"));
             }
             self.spread_range(symbol, &range);
             if let Some(info) = self.symbols.get_mut(&symbol) {
@@ -360,4 +400,10 @@ impl System {
         }
         Ok(())
     }
+}
+
+/// What comes below a codistribution that does not know of it.
+fn late(what: &str, span: &Span) -> Problem {
+    let message = format!("'codistribution(...)' above does not know of {what}");
+    Problem::new(Code::TooLate, span, message, "declare fields and outputs before it")
 }

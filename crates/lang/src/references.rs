@@ -1,5 +1,6 @@
 //! Names behind `restates` and `follows`: each has to be there, and none may lead back to itself.
 
+use super::codes::Code;
 use super::error::{Problem, nearest};
 use super::grammar::parse_file;
 use super::model::System;
@@ -72,7 +73,7 @@ impl System {
         self.exists(claim, reference, &known[&file])?;
         if ways.lead_back(&claim.id, reference, folder, known) {
             let message = format!("'{}' is said to come from itself", claim.id);
-            return Err(Problem::new(&reference.span, message, "leads back to it"));
+            return Err(Problem::new(Code::Reference, &reference.span, message, "leads back to it"));
         }
         Ok(())
     }
@@ -90,7 +91,7 @@ impl System {
             Some(entry) if !follows || entry.is_fault => return Ok(()),
             Some(_) => {
                 let message = format!("'{name}' is no error from which another one could follow");
-                return Err(Problem::new(&reference.span, message, "this entry holds")
+                return Err(Problem::new(Code::Reference, &reference.span, message, "this entry holds")
                     .help("name an erratum, or another entry with a form that does not hold"));
             }
             None => {}
@@ -104,8 +105,12 @@ impl System {
         }
         let what = if follows { "entry" } else { "entry, definition, field or state" };
         let file = reference.file.as_ref().map(|file| format!(" in {file}")).unwrap_or_default();
-        let problem =
-            Problem::new(&reference.span, format!("there is no {what} '{name}'{file}"), "not found");
+        let problem = Problem::new(
+            Code::Reference,
+            &reference.span,
+            format!("there is no {what} '{name}'{file}"),
+            "not found",
+        );
         // what another file lacks is not this one's doing
         let problem = if here { problem.because(Cause::Unknown(name.to_owned())) } else { problem };
         Err(match nearest(name, entries.keys().map(String::as_str)) {
@@ -127,7 +132,8 @@ fn look_into(
         true => folder.join(file),
         false => parent.join(file),
     });
-    let refuse = |message: String| Problem::new(&reference.span, message, "referred to here");
+    let refuse =
+        |message: String| Problem::new(Code::Reference, &reference.span, message, "referred to here");
     if !known.contains_key(&path) {
         let text = load(&path).map_err(refuse)?;
         let items = parse_file(&with_plain_line_ends(&text)).map_err(|error| {

@@ -1,6 +1,7 @@
 //! The text of a file as it is read: whole, within bounds, its lines counted as a person counts them, and nothing in it that makes it
 //! look other than it is.
 
+use super::codes::Code;
 use super::error::Problem;
 use super::grammar::ENTRIES;
 use palmistry_io::file::{ReadFailure, read_text};
@@ -33,7 +34,8 @@ pub(super) fn refuse_reordering(text: &str) -> Result<(), Problem> {
         None => Ok(()),
         Some((at, c)) => {
             let message = format!("U+{:04X} changes the order in which the text is shown", c as u32);
-            Err(Problem::new(&(at..at + c.len_utf8()), message, "an invisible character").help("remove it"))
+            Err(Problem::new(Code::File, &(at..at + c.len_utf8()), message, "an invisible character")
+                .help("remove it"))
         }
     }
 }

@@ -143,14 +143,15 @@ fn found(fault: Flaw, input: &mut Text<'_>) -> Read<Found> {
     }
 }
 
-/// What a fault says: its id, from what it follows, and its two forms.
+/// What a fault says: its id, from what it follows, where in the text it stands, and its two forms.
 pub(super) struct FlawEntry {
     pub id: palmistry_math::expression::syntax::Name,
     pub follows: Option<Reference>,
+    pub passage: Option<String>,
     pub body: ClaimBody,
 }
 
-/// `erratum ID [follows X]: printed ... corrected ...` and its kin, without the remark.
+/// `erratum ID [follows X] [at "page"]: printed ... corrected ...` and its kin, without the remark.
 pub(super) fn fault(input: &mut Text<'_>) -> Read<FlawEntry> {
     let begin = |fault: Flaw| keyword(fault.keywords()[0]).value(fault);
     let [a, b, c, d, e] = Flaw::ALL.map(begin);
@@ -158,6 +159,7 @@ pub(super) fn fault(input: &mut Text<'_>) -> Read<FlawEntry> {
     let [_, before, between] = fault.keywords();
     let id = cut_err(identifier).parse_next(input)?;
     let follows = follows(input)?;
+    let passage = opt(preceded(keyword("at"), cut_err(quoted))).parse_next(input)?;
     cut_err(sign(":")).context("':'").parse_next(input)?;
     let what = match fault {
         Flaw::Erratum => "'printed' and the statement as it is printed",
@@ -179,5 +181,5 @@ pub(super) fn fault(input: &mut Text<'_>) -> Read<FlawEntry> {
         Some(printed) => ClaimBody::Erratum { fault, quoted, printed, corrected: right },
         None => ClaimBody::Scan { fault, scanned: quoted.unwrap_or_default(), repaired: right },
     };
-    Ok(FlawEntry { id, follows, body })
+    Ok(FlawEntry { id, follows, passage, body })
 }

@@ -25,6 +25,8 @@ pub(crate) enum Item {
     Angle(Vec<Name>),
     /// Inequalities under which every claim of the file is made.
     Assume(Vec<Equation>),
+    /// How names look in a formula, in LaTeX, and where that stands.
+    Looks(Vec<(Name, String, Span)>),
     Let {
         name: Name,
         dimension: Option<DeclaredDimension>,
@@ -172,6 +174,10 @@ pub struct ClaimSyntax {
     pub basis: Basis,
     /// The fault of which this one is a consequence.
     pub follows: Option<Reference>,
+    /// Where in the text the fault stands: its section and page.
+    pub passage: Option<String>,
     /// A remark in quotation marks behind it.
     pub remark: Option<String>,
+    /// Of a fault, whether a conclusion of the text changes.
+    pub conclusion: Option<String>,
 }

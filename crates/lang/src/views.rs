@@ -1,6 +1,7 @@
 //! What a paper looks at beside its claims: sets of states by name, maps and lines, and systems that are others under
 //! conditions. Read here, and checked as far as names go; what is found there is decided above.
 
+use super::codes::Code;
 use super::elaborate::Wanted;
 use super::error::Problem;
 use super::grammar::quoted;
@@ -281,7 +282,7 @@ impl System {
             View::Set { title, conditions, is_pole, span } => {
                 if !self.set_titles.insert(title.clone()) {
                     let message = format!("there is a set \"{title}\" already");
-                    return Err(Problem::new(span, message, "the second one"));
+                    return Err(Problem::new(Code::Twice, span, message, "the second one"));
                 }
                 let written = self.check_conditions(conditions)?;
                 self.sets.push(NamedSet {
@@ -300,6 +301,7 @@ impl System {
                     if least >= greatest {
                         let message = format!("the range of '{}' has no width", name.text);
                         return Err(Problem::new(
+                            Code::Range,
                             &(low.span.start..high.span.end),
                             message,
                             "low above high",
@@ -310,7 +312,7 @@ impl System {
                 let [x, y] = checked.try_into().unwrap_or_else(|_| unreachable!("the grammar has two"));
                 if x.name == y.name {
                     let message = "the two coordinates are one";
-                    return Err(Problem::new(&axes[1].name.span, message, "the second time"));
+                    return Err(Problem::new(Code::View, &axes[1].name.span, message, "the second time"));
                 }
                 let at = self.point(at)?;
                 let order = order.as_ref().map(|order| self.word_length(order)).transpose()?;
@@ -343,7 +345,7 @@ impl System {
             View::Reduction { alias, conditions, remark } => {
                 let Some((_, path)) = self.aliases.iter().find(|(known, _)| *known == alias.text) else {
                     let message = format!("there is no imported system '{}'", alias.text);
-                    return Err(Problem::new(&alias.span, message, "not imported above")
+                    return Err(Problem::new(Code::View, &alias.span, message, "not imported above")
                         .help(format!("import it: use {} = \"its file\"", alias.text)));
                 };
                 let path = path.clone();
@@ -362,7 +364,12 @@ impl System {
             self.scalar(&condition.left)?;
             self.scalar(&condition.right)?;
             if let Some(within) = &condition.within {
-                return Err(Problem::new(&within.span, "a condition is met exactly", "without 'within'"));
+                return Err(Problem::new(
+                    Code::Statement,
+                    &within.span,
+                    "a condition is met exactly",
+                    "without 'within'",
+                ));
             }
             let text = in_one_line(&self.source, &condition.span);
             // the relations of a chain have one text
@@ -385,7 +392,7 @@ impl System {
         }
         let message =
             format!("'{}' is known, and a picture shows how well an unknown is observable", name.text);
-        Err(Problem::new(&name.span, message, "not unknown")
+        Err(Problem::new(Code::View, &name.span, message, "not unknown")
             .help("name a state, or a parameter that is unknown"))
     }
 
@@ -404,7 +411,7 @@ impl System {
         }
         .ok_or_else(|| {
             let message = format!("the order of Lie derivatives is a number from 0 to {LONGEST_WORD}");
-            Problem::new(&order.span, message, "this is none")
+            Problem::new(Code::Number, &order.span, message, "this is none")
         })
     }
 }

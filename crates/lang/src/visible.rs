@@ -1,6 +1,7 @@
 //! Statements about single unknowns and functions of them: `observable(x, a*b)`, `unobservable(k)`, and of constants
 //! `identifiable(a*b)`, `unidentifiable(k)`. They stand by themselves, with no relation behind them.
 
+use super::codes::Code;
 use super::error::Problem;
 use super::model::{System, Time, Value};
 use super::syntax::Statement;
@@ -73,7 +74,7 @@ impl System {
                 other => {
                     let message =
                         format!("'{word}' is said of unknowns and functions, not of {}", other.describe());
-                    return Err(Problem::new(&argument.span, message, "this"));
+                    return Err(Problem::new(Code::Value, &argument.span, message, "this"));
                 }
             };
             let mentioned = self.graph.symbols_of(found.iter().copied());
@@ -81,12 +82,18 @@ impl System {
                 let moves = self.symbol_name(moves).to_owned();
                 let other = if is_seen { "observable" } else { "unobservable" };
                 let message = format!("'{word}' is said of constants, and '{moves}' moves");
-                return Err(Problem::new(&argument.span, message, "this").help(format!("write '{other}'")));
+                return Err(Problem::new(Code::Statement, &argument.span, message, "this")
+                    .help(format!("write '{other}'")));
             }
             functions.extend(found);
         }
         if functions.is_empty() {
-            return Err(Problem::new(span, format!("'{word}' takes unknowns, or functions of them"), "here"));
+            return Err(Problem::new(
+                Code::Arguments,
+                span,
+                format!("'{word}' takes unknowns, or functions of them"),
+                "here",
+            ));
         }
         Ok(Value::Visible { functions, is_seen })
     }

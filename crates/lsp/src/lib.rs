@@ -318,6 +318,7 @@ fn diagnostic(source: &Source, problem: &ReadError) -> Value {
         "range": source.range(&(begin..begin + problem.span.len())),
         "severity": 1,
         "source": "palmistry",
+        "code": problem.code.id(),
         "message": message,
     })
 }

@@ -1,6 +1,6 @@
 //! Statements and expressions of the language as mathematics: MathML for a page, LaTeX for a paper.
 
-use palmistry_lang::{Statement, parse_statement};
+use palmistry_lang::{Looks, Statement, parse_statement};
 use palmistry_math::expression::notation::{
     Fence, Formula, FormulaLayout, FormulaSign, latex, mathml_in_pieces,
 };
@@ -11,9 +11,9 @@ use palmistry_math::expression::syntax::{Equation, Expr, ExprKind};
 const DEEPEST: usize = 60;
 
 /// A statement as it is written in a file, as a formula; none where the text is no statement.
-fn statement_formula(text: &str) -> Option<Formula> {
+fn statement_formula(text: &str, looks: &Looks) -> Option<Formula> {
     let statement = parse_statement(text).ok()?;
-    let layout = FormulaLayout::new(text, expressions(&statement));
+    let layout = FormulaLayout::with_looks(text, expressions(&statement), looks);
     let relations = |equations: Vec<&Equation>| match layout.relations(&equations) {
         Formula::Row(parts) => parts,
         other => vec![other],
@@ -45,14 +45,14 @@ fn expressions(statement: &Statement) -> impl Iterator<Item = &Expr> {
         .flat_map(|one| [Some(&one.left), Some(&one.right), one.within.as_ref()].into_iter().flatten())
 }
 
-fn expression_formula(text: &str) -> Option<Formula> {
+fn expression_formula(text: &str, looks: &Looks) -> Option<Formula> {
     let expr = parse_expression(text).ok()?;
-    Some(FormulaLayout::new(text, [&expr]).expression(&expr))
+    Some(FormulaLayout::with_looks(text, [&expr], looks).expression(&expr))
 }
 
 /// A definition `name = text` as a formula.
-fn definition_formula(name: &str, text: &str) -> Option<Formula> {
-    statement_formula(&format!("{name} = {text}"))
+fn definition_formula(name: &str, text: &str, looks: &Looks) -> Option<Formula> {
+    statement_formula(&format!("{name} = {text}"), looks)
 }
 
 /// A statement in LaTeX; none where the text is no statement, as that of a definition in words.
@@ -65,23 +65,33 @@ fn definition_formula(name: &str, text: &str) -> Option<Formula> {
 /// ));
 /// ```
 pub fn statement_latex(text: &str) -> Option<String> {
-    statement_formula(text).map(|formula| latex(&formula))
+    statement_latex_in(text, &Looks::default())
+}
+
+/// The same with the looks that a file gives to its names.
+pub fn statement_latex_in(text: &str, looks: &Looks) -> Option<String> {
+    statement_formula(text, looks).map(|formula| latex(&formula))
 }
 
 /// An expression in LaTeX; none where the text is no expression.
-pub fn expression_latex(text: &str) -> Option<String> {
-    expression_formula(text).map(|formula| latex(&formula))
+pub fn expression_latex(text: &str, looks: &Looks) -> Option<String> {
+    expression_formula(text, looks).map(|formula| latex(&formula))
 }
 
 /// What a text says, as MathML between whose parts a line may break; none where it is neither a statement nor an expression, or
 /// so deep that a browser would not set it.
 pub fn formula_mathml(text: &str) -> Option<String> {
-    shown(statement_formula(text).or_else(|| expression_formula(text))?)
+    formula_mathml_in(text, &Looks::default())
+}
+
+/// The same with the looks that a file gives to its names.
+pub fn formula_mathml_in(text: &str, looks: &Looks) -> Option<String> {
+    shown(statement_formula(text, looks).or_else(|| expression_formula(text, looks))?)
 }
 
 /// The same of a name and what it stands for.
-pub fn definition_mathml(name: &str, text: &str) -> Option<String> {
-    shown(definition_formula(name, text)?)
+pub fn definition_mathml(name: &str, text: &str, looks: &Looks) -> Option<String> {
+    shown(definition_formula(name, text, looks)?)
 }
 
 fn shown(formula: Formula) -> Option<String> {
@@ -89,13 +99,13 @@ fn shown(formula: Formula) -> Option<String> {
 }
 
 /// Several statements in one line, as conditions on a set of states.
-pub fn conditions_mathml(conditions: &[String]) -> Option<String> {
+pub fn conditions_mathml(conditions: &[String], looks: &Looks) -> Option<String> {
     let mut row = Vec::new();
     for condition in conditions {
         if !row.is_empty() {
             row.push(Formula::Sign(FormulaSign::Comma));
         }
-        match statement_formula(condition)? {
+        match statement_formula(condition, looks)? {
             Formula::Row(parts) => row.extend(parts),
             other => row.push(other),
         }
@@ -105,11 +115,11 @@ pub fn conditions_mathml(conditions: &[String]) -> Option<String> {
 
 /// A vector field as a differential operator: a sum of rates before partial derivatives. Each part has a sign, what stands before the
 /// derivative, and the state by which it is; a rate that is `1` is left out.
-pub(crate) fn field_mathml(parts: &[SignedPart<'_>]) -> Option<String> {
+pub(crate) fn field_mathml(parts: &[SignedPart<'_>], looks: &Looks) -> Option<String> {
     let rows: Vec<String> = parts.iter().map(|part| format!("{}, {}", part.rate, part.state)).collect();
     let text = format!("[{}]", rows.join("; "));
     let matrix = parse_expression(&text).ok()?;
-    let layout = FormulaLayout::new(&text, [&matrix]);
+    let layout = FormulaLayout::with_looks(&text, [&matrix], looks);
     let ExprKind::Matrix(rows) = &matrix.kind else { return None };
     let mut row = Vec::new();
     for (part, entries) in parts.iter().zip(rows) {

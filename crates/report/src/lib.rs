@@ -38,6 +38,7 @@ mod space_advice;
 mod space_page;
 mod space_surfaces;
 mod stress;
+mod structure;
 mod trade;
 mod value;
 
@@ -54,7 +55,7 @@ pub use claims::{
 };
 #[doc(hidden)]
 pub use formula::definition_mathml;
-pub use formula::{expression_latex, formula_mathml, statement_latex};
+pub use formula::{expression_latex, formula_mathml, formula_mathml_in, statement_latex, statement_latex_in};
 #[doc(hidden)]
 pub use joint::{JointObserved, joint_json, joint_page, joint_parameters, joint_simulation, joint_text};
 #[doc(hidden)]
@@ -67,7 +68,9 @@ pub use motion::{Observed, modes_json, modes_text, observe_json, observe_page, o
 pub use motion::{stream_end_json, stream_end_text, stream_json, stream_text};
 pub use notebook::{claims_html, rank_html};
 pub use object::{claims_json, read_error_json, versioned};
-pub use page::{TheoremAddresses, drops_page, findings_json, findings_text, page, page_with};
+pub use page::{
+    TheoremAddresses, drops_page, findings_json, findings_text, page, page_with, system_mathematics,
+};
 #[doc(hidden)]
 pub use page::{forget_seconds, forget_times};
 #[doc(hidden)]
@@ -91,6 +94,8 @@ pub use space_page::space_page;
 pub use space_surfaces::{SpaceSurface, SurfaceKind, space_surfaces};
 #[doc(hidden)]
 pub use stress::{stress_json, stress_pictures, stress_text};
+#[doc(hidden)]
+pub use structure::{NodeVerdict, structure_picture};
 #[doc(hidden)]
 pub use trade::{trade_front_table, trade_json, trade_plot, trade_text};
 pub use value::{ValueAsked, how_certain, value_json, value_text};

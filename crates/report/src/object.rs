@@ -14,10 +14,11 @@ pub fn versioned(mut object: Value) -> Value {
     object
 }
 
-/// What is wrong with a file, and where, as one object: message, file, line and column, both counted from one.
+/// What is wrong with a file, and where, as one object: code, message, file, line and column, both counted from one.
 pub fn read_error_json(error: &ReadError) -> Value {
     let (line, column) = error.line_and_column();
     let mut object = json!({
+        "code": error.code.id(),
         "message": error.message,
         "file": error.source_code.name(),
         "line": line,

@@ -4,7 +4,7 @@ use super::pieces::symbol;
 use crate::expression::Span;
 use crate::script::{Dialect, Parser, Syntax, tokens};
 use palmistry_io::foreign::Budget;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use std::collections::BTreeMap;
 
 /// The headers, each with what it may be called.
@@ -34,6 +34,7 @@ pub(super) fn without_headers(text: &str) -> Result<(String, BTreeMap<&'static s
                 let ours = line[from..].split('#').next().unwrap_or_default();
                 if headers.insert(name, at + from..at + from + ours.trim_end().len()).is_some() {
                     return Err(Problem::new(
+                        Code::Foreign,
                         &(at..at + line.trim_end().len()),
                         format!("'{name}' is said twice"),
                         "again here",
@@ -70,7 +71,8 @@ pub(super) fn names_in(text: &str, span: Option<&Span>, budget: &Budget) -> Resu
     list.iter()
         .map(|one| {
             symbol(one).ok_or_else(|| {
-                Problem::new(&one.span, "this is no name", "this").help("names with commas between them")
+                Problem::new(Code::Foreign, &one.span, "this is no name", "this")
+                    .help("names with commas between them")
             })
         })
         .collect()

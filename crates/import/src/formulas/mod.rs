@@ -18,7 +18,7 @@ use crate::model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate};
 use crate::script::{Dialect, Parser, Syntax, SyntaxKind, Token, meaning, named_function, tokens};
 use headers::{expressions_in, names_in, without_headers};
 use palmistry_io::foreign::Budget;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use pieces::{TIME, differentiated, is_equation, symbol, vector};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -71,7 +71,7 @@ pub(crate) fn read(text: &str, roles: &PrintedRoles, budget: &Budget) -> Result<
             Ok(one) => reading.asked_outputs.push(ForeignExpr { span: 0..0, ..one }),
             Err(why) => {
                 let message = format!("the output '{wanted}' cannot be read: {}", why.message);
-                return Err(Problem::new(&(0..text.len().min(1)), message, "the file")
+                return Err(Problem::new(Code::Foreign, &(0..text.len().min(1)), message, "the file")
                     .help("an output is a name or an expression of the file's names"));
             }
         }
@@ -185,13 +185,13 @@ impl<'b> Reading<'b> {
                     match self.vectors {
                         1 if self.rates.is_empty() => self.all_rates(&list, &one.span),
                         1 | 2 => self.all_outputs(&list),
-                        _ => Err(Problem::new(&one.span, "a third vector", "this")
+                        _ => Err(Problem::new(Code::Foreign, &one.span, "a third vector", "this")
                             .help("a vector of rates, and then one of outputs")),
                     }
                 }
                 // one state alone
                 None if self.states.len() == 1 && self.rates.is_empty() => self.all_rates(&[one], &one.span),
-                None => Err(Problem::new(&one.span, "nothing says what this is", "this").help(
+                None => Err(Problem::new(Code::Foreign, &one.span, "nothing says what this is", "this").help(
                     "a rate is x' = e, a definition name = e; a vector of rates needs 'states: x, y' or --state x,y",
                 )),
             },
@@ -213,10 +213,13 @@ impl<'b> Reading<'b> {
                     self.states = names.collect::<Result<_, _>>()?;
                     Ok(())
                 }
-                _ => {
-                    Err(Problem::new(&left.span, format!("nothing says what the vector '{name}' is"), "this")
-                        .help("a vector of rates is called f, one of outputs h, one of states x"))
-                }
+                _ => Err(Problem::new(
+                    Code::Foreign,
+                    &left.span,
+                    format!("nothing says what the vector '{name}' is"),
+                    "this",
+                )
+                .help("a vector of rates is called f, one of outputs h, one of states x")),
             };
         }
         let value = self.value(right)?;
@@ -236,8 +239,13 @@ impl<'b> Reading<'b> {
             return Ok(());
         }
         if !self.defined.insert(name.clone()) {
-            return Err(Problem::new(&left.span, format!("'{name}' has two equations"), "the second one")
-                .help("take one of them out"));
+            return Err(Problem::new(
+                Code::Foreign,
+                &left.span,
+                format!("'{name}' has two equations"),
+                "the second one",
+            )
+            .help("take one of them out"));
         }
         self.definitions.push((name, value));
         Ok(())
@@ -245,8 +253,13 @@ impl<'b> Reading<'b> {
 
     fn rate(&mut self, name: &str, rate: ForeignExpr, span: &Span) -> Result<(), Problem> {
         if !self.rated.insert(name.to_owned()) {
-            return Err(Problem::new(span, format!("'{name}' has two rates"), "the second one")
-                .help("take one of them out"));
+            return Err(Problem::new(
+                Code::Foreign,
+                span,
+                format!("'{name}' has two rates"),
+                "the second one",
+            )
+            .help("take one of them out"));
         }
         self.rates.push(ForeignRate { name: name.to_owned(), rate, span: span.clone() });
         Ok(())
@@ -258,7 +271,7 @@ impl<'b> Reading<'b> {
                 0 => format!("a vector of {} rates, and nothing says of which states", list.len()),
                 count => format!("{} rates, and {count} states", list.len()),
             };
-            return Err(Problem::new(span, message, "these rates")
+            return Err(Problem::new(Code::Foreign, span, message, "these rates")
                 .help("name the states in this order: a line 'states: x, y', or --state x,y"));
         }
         let states = self.states.clone();
@@ -289,8 +302,9 @@ impl<'b> Reading<'b> {
                 let paid = paid.map_err(|spent| crate::too_much(span, spent));
                 return Some(paid.map(|()| ForeignExpr { span: span.clone(), ..shared.clone() }));
             }
-            let missing =
-                |what: &str, help: &str| Some(Err(Problem::new(span, what.to_owned(), "this").help(help)));
+            let missing = |what: &str, help: &str| {
+                Some(Err(Problem::new(Code::Foreign, span, what.to_owned(), "this").help(help)))
+            };
             return match name.as_str() {
                 _ if self.declared.contains(&name) => Some(Ok(ForeignExpr::name(name, span))),
                 "E" => missing(
@@ -324,7 +338,7 @@ impl<'b> Reading<'b> {
             }
             ("Integer" | "Float", [value, ..]) => self.value(value),
             ("Derivative" | "diff", _) => {
-                Err(Problem::new(span, "a derivative stands in an expression", "this")
+                Err(Problem::new(Code::Foreign, span, "a derivative stands in an expression", "this")
                     .help("put its equation in its place: only states may be differentiated, on the left"))
             }
             _ => return None,
@@ -340,11 +354,12 @@ impl<'b> Reading<'b> {
             ..ForeignModel::default()
         };
         if model.states.is_empty() {
-            return Err(Problem::new(&(0..text.len().min(1)), "the file has no rates", "the file")
+            return Err(Problem::new(Code::Foreign, &(0..text.len().min(1)), "the file has no rates", "the file")
                 .help("a rate is x' = e, dx/dt = e or Eq(Derivative(x(t), t), e); a vector of rates needs 'states: x, y'"));
         }
         if let Some(missing) = self.states.iter().find(|name| !self.rated.contains(*name)) {
             return Err(Problem::new(
+                Code::Foreign,
                 &(0..text.len().min(1)),
                 format!("the state '{missing}' has no rate"),
                 "the file",
@@ -354,6 +369,7 @@ impl<'b> Reading<'b> {
         let moved: BTreeSet<String> = model.states.iter().map(|state| state.name.clone()).collect();
         if let Some((name, value)) = model.definitions.iter().find(|(name, _)| moved.contains(name)) {
             return Err(Problem::new(
+                Code::Foreign,
                 &value.span,
                 format!("'{name}' is a state, and is defined here"),
                 "this",
@@ -408,6 +424,6 @@ fn outputs_by_use(model: &mut ForeignModel) {
 }
 
 fn no_left(syntax: &Syntax) -> Problem {
-    Problem::new(&syntax.span, "this is no name and no derivative of one", "this")
+    Problem::new(Code::Foreign, &syntax.span, "this is no name and no derivative of one", "this")
         .help("an equation has x', dx/dt, Derivative(x(t), t) or a name on its left")
 }

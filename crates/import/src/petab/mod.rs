@@ -15,7 +15,7 @@ use super::model::{ForeignConstant, ForeignModel, ForeignOutput};
 use super::names::ForeignNames;
 use super::{ALLOWANCE, STACK, print, sbml, write};
 use palmistry_io::foreign::Budget;
-use palmistry_lang::{Problem, ReadError, System, with_plain_line_ends};
+use palmistry_lang::{Code, Problem, ReadError, System, with_plain_line_ends};
 use palmistry_math::number::parse_decimal;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path};
@@ -99,14 +99,21 @@ pub fn import_petab(
         running.ok().map(|running| running.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
     });
     read.unwrap_or_else(|| {
-        let problem = Problem::new(&(0..text.len().min(1)), "there is no room to read this file", "the file");
+        let problem = Problem::new(
+            Code::Foreign,
+            &(0..text.len().min(1)),
+            "there is no room to read this file",
+            "the file",
+        );
         Err(problem.help("free some memory, and report the file if that does not help").locate(name, text))
     })
 }
 
 fn read(name: &str, text: &str, stem: &str, load: &PetabLoader<'_>) -> Result<ImportedProblem, ReadError> {
     let refused = |message: String, help: &str| {
-        Problem::new(&(0..text.len().min(1)), message, "the file").help(help).locate(name, text)
+        Problem::new(Code::Foreign, &(0..text.len().min(1)), message, "the file")
+            .help(help)
+            .locate(name, text)
     };
     let yaml = Yaml::read(text).map_err(|problem| problem.locate(name, text))?;
     let no_problem = || {
@@ -389,8 +396,13 @@ impl<'f> Reading<'f> {
     /// An expression in our language.
     fn text(&self, expression: &ForeignExpr, names: &ForeignNames) -> Result<String, Problem> {
         if let ForeignKind::Case { .. } = expression.kind {
-            return Err(Problem::new(&expression.span, "a formula by cases is not read here", "this")
-                .help("make it an assignment rule of the model"));
+            return Err(Problem::new(
+                Code::Foreign,
+                &expression.span,
+                "a formula by cases is not read here",
+                "this",
+            )
+            .help("make it an assignment rule of the model"));
         }
         print::text(expression, names, &self.budget)
     }

@@ -1,7 +1,7 @@
 //! The tables of a PEtab problem: tab-separated text with a row of names.
 
 use super::PetabFile;
-use palmistry_lang::{Problem, ReadError};
+use palmistry_lang::{Code, Problem, ReadError};
 use std::collections::BTreeMap;
 
 /// Nobody calls a thing by a longer name.
@@ -35,7 +35,7 @@ impl<'f> Table<'f> {
     /// Where it is no table, or lacks a column.
     pub fn read(file: &'f PetabFile, needed: &[&str]) -> Result<Table<'f>, ReadError> {
         let problem = |message: String, place: std::ops::Range<usize>, help: &str| {
-            Problem::new(&place, message, "here").help(help).locate(&file.name, &file.text)
+            Problem::new(Code::ForeignText, &place, message, "here").help(help).locate(&file.name, &file.text)
         };
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(b'\t')
@@ -97,7 +97,9 @@ impl<'f> Table<'f> {
 
     /// A mistake in a row.
     pub fn error(&self, row: &Row, message: impl Into<String>, help: impl Into<String>) -> ReadError {
-        Problem::new(&row.place, message, "in this row").help(help).locate(&self.file.name, &self.file.text)
+        Problem::new(Code::ForeignText, &row.place, message, "in this row")
+            .help(help)
+            .locate(&self.file.name, &self.file.text)
     }
 
     /// The cell of a column that a row has to have.

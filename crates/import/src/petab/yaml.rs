@@ -1,6 +1,6 @@
 //! The file that names a problem's tables: YAML of mappings, lists and texts.
 
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use saphyr_parser::{Event, Parser, ScanError};
 use std::collections::BTreeMap;
 
@@ -58,7 +58,8 @@ impl Yaml {
 }
 
 fn wrong(message: String) -> Problem {
-    Problem::new(&(0..1), message, "the file").help("PEtab 1.0 names parameter_file and problems")
+    Problem::new(Code::ForeignText, &(0..1), message, "the file")
+        .help("PEtab 1.0 names parameter_file and problems")
 }
 
 fn unread(why: &ScanError) -> Problem {

@@ -6,7 +6,7 @@ use super::mathml::Formulas;
 use super::xml::{child, elements, is, listed, place, required, says};
 use super::{Reading, value_of};
 use dashu::rational::RBig;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use roxmltree::Node;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -134,7 +134,7 @@ fn stoichiometry(node: Node<'_, '_>, formulas: &Formulas, is_level_3: bool) -> R
         return match child(math, "math") {
             Some(math) => formulas.meaning(math),
             None => {
-                Err(Problem::new(&place(math), "a stoichiometry without a formula", "this")
+                Err(Problem::new(Code::Foreign, &place(math), "a stoichiometry without a formula", "this")
                     .help("write <math>"))
             }
         };
@@ -142,8 +142,10 @@ fn stoichiometry(node: Node<'_, '_>, formulas: &Formulas, is_level_3: bool) -> R
     let span = place(node);
     match value_of(node, "stoichiometry")? {
         Some(value) => Ok(ForeignExpr::new(ForeignKind::Number(value), &span)),
-        None if is_level_3 => Err(Problem::new(&span, "the stoichiometry is not said", "this")
-            .help("level 3 asks for stoichiometry=\"1\"; one that changes is not read")),
+        None if is_level_3 => {
+            Err(Problem::new(Code::Foreign, &span, "the stoichiometry is not said", "this")
+                .help("level 3 asks for stoichiometry=\"1\"; one that changes is not read"))
+        }
         None => Ok(ForeignExpr::integer(1, &span)),
     }
 }
@@ -157,7 +159,7 @@ impl Reading<'_> {
                 Some(law) => model.definitions.push((reaction.id.clone(), law.clone())),
                 None if changes => {
                     let message = format!("the reaction '{}' has no kinetic law", reaction.id);
-                    return Err(Problem::new(&reaction.span, message, "this")
+                    return Err(Problem::new(Code::Foreign, &reaction.span, message, "this")
                         .help("a model of rates has one for each reaction"));
                 }
                 None => {}
@@ -166,6 +168,7 @@ impl Reading<'_> {
                 reaction.makes.iter().find(|(species, _)| !self.index.species.contains_key(species))
             {
                 return Err(Problem::new(
+                    Code::Foreign,
                     &place.span,
                     format!("nothing says what the species '{species}' is"),
                     "this",
@@ -241,7 +244,7 @@ impl Reading<'_> {
         if !rule.is_rate {
             let message =
                 format!("'{}' is a concentration in a compartment whose size is assigned", species.id);
-            return Err(Problem::new(&species.span, message, "this species")
+            return Err(Problem::new(Code::Foreign, &species.span, message, "this species")
                 .help("write the rate of the size as a rate rule, or the species as an amount"));
         }
         let span = &species.span;

@@ -6,7 +6,7 @@ use super::super::script::MOST_CASES;
 use super::super::too_much;
 use super::xml::{elements, is, place};
 use palmistry_io::foreign::Budget;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use palmistry_math::number::parse_decimal;
 use roxmltree::Node;
 use std::collections::BTreeMap;
@@ -33,7 +33,7 @@ pub(super) struct Formulas<'b> {
 type Meant = Result<ForeignExpr, Problem>;
 
 fn unread(node: Node<'_, '_>, what: &str, help: &str) -> Problem {
-    Problem::new(&place(node), what.to_owned(), "this").help(help)
+    Problem::new(Code::Foreign, &place(node), what.to_owned(), "this").help(help)
 }
 
 impl Formulas<'_> {

@@ -13,7 +13,7 @@ use dashu::rational::RBig;
 use kinetics::{Reaction, Species, Taken};
 use mathml::{Formulas, text_of};
 use palmistry_io::foreign::Budget;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use palmistry_math::number::parse_decimal;
 use roxmltree::Node;
 use std::collections::{BTreeMap, BTreeSet};
@@ -36,17 +36,23 @@ pub(super) fn read_started(text: &str, budget: &Budget) -> Result<Started, Probl
     let document = document(text, budget)?;
     let root = document.root_element();
     if !is(root, "sbml") {
-        return Err(Problem::new(&place(root), "this is no SBML", "the first element")
+        return Err(Problem::new(Code::Foreign, &place(root), "this is no SBML", "the first element")
             .help("an SBML file begins with <sbml level=\"...\">"));
     }
     let level = root.attribute("level").unwrap_or_default().trim();
     if !matches!(level, "2" | "3") {
-        return Err(Problem::new(&place(root), format!("SBML of level '{level}' is not read"), "this")
-            .help("convert it to level 2 or 3, by libSBML for instance"));
+        return Err(Problem::new(
+            Code::Foreign,
+            &place(root),
+            format!("SBML of level '{level}' is not read"),
+            "this",
+        )
+        .help("convert it to level 2 or 3, by libSBML for instance"));
     }
     refuse_packages(root)?;
     let model = child(root, "model").ok_or_else(|| {
-        Problem::new(&place(root), "the file has no model", "this").help("an SBML file has <model> in it")
+        Problem::new(Code::Foreign, &place(root), "the file has no model", "this")
+            .help("an SBML file has <model> in it")
     })?;
     refuse(model)?;
     let reading = Reading::of(model, level == "3", budget)?;
@@ -65,18 +71,29 @@ fn refuse(model: Node<'_, '_>) -> Result<(), Problem> {
         node.attribute("id").or(node.attribute("variable")).map_or(String::new(), |id| format!(" '{id}'"))
     };
     if let Some(event) = listed(model, "listOfEvents").into_iter().next() {
-        return Err(Problem::new(&place(event), format!("the event{} is not read", named(event)), "this")
-            .help("events change states in jumps: take them out, and look at the time between them"));
+        return Err(Problem::new(
+            Code::Foreign,
+            &place(event),
+            format!("the event{} is not read", named(event)),
+            "this",
+        )
+        .help("events change states in jumps: take them out, and look at the time between them"));
     }
     for rule in listed(model, "listOfRules") {
         if is(rule, "algebraicRule") {
-            return Err(Problem::new(&place(rule), "algebraic rules are not read", "this rule")
-                .help("solve it for one of its variables, and write an assignment rule"));
+            return Err(Problem::new(
+                Code::Foreign,
+                &place(rule),
+                "algebraic rules are not read",
+                "this rule",
+            )
+            .help("solve it for one of its variables, and write an assignment rule"));
         }
     }
     for reaction in listed(model, "listOfReactions") {
         if says(reaction, "fast", false) {
             return Err(Problem::new(
+                Code::Foreign,
                 &place(reaction),
                 format!("the reaction{} is fast: that is not read", named(reaction)),
                 "this",
@@ -105,7 +122,8 @@ fn refuse_packages(root: Node<'_, '_>) -> Result<(), Problem> {
                 "the package '{}' changes what the model means, and is not read",
                 name.unwrap_or(package)
             );
-            Err(Problem::new(&place(root), message, "this").help("export the model as core SBML"))
+            Err(Problem::new(Code::Foreign, &place(root), message, "this")
+                .help("export the model as core SBML"))
         }
         None => Ok(()),
     }
@@ -163,8 +181,10 @@ fn value_of(node: Node<'_, '_>, name: &str) -> Result<Option<RBig>, Problem> {
     }
     match (!text.contains('/')).then(|| parse_decimal(text)).flatten() {
         Some(value) => Ok(Some(value)),
-        None => Err(Problem::new(&place(node), format!("{name}=\"{text}\" is no number"), "this")
-            .help("write a decimal")),
+        None => {
+            Err(Problem::new(Code::Foreign, &place(node), format!("{name}=\"{text}\" is no number"), "this")
+                .help("write a decimal"))
+        }
     }
 }
 
@@ -264,8 +284,13 @@ impl<'b> Reading<'b> {
 
     fn math(&self, node: Node<'_, '_>) -> Result<ForeignExpr, Problem> {
         let math = child(node, "math").ok_or_else(|| {
-            Problem::new(&place(node), format!("'{}' has no formula", node.tag_name().name()), "this")
-                .help("write <math>")
+            Problem::new(
+                Code::Foreign,
+                &place(node),
+                format!("'{}' has no formula", node.tag_name().name()),
+                "this",
+            )
+            .help("write <math>")
         })?;
         self.formulas.meaning(math)
     }
@@ -292,7 +317,7 @@ impl<'b> Reading<'b> {
                         "the rule is about '{variable}', which is no species, compartment or parameter"
                     ),
                 };
-                return Err(Problem::new(&place(node), message, "this rule")
+                return Err(Problem::new(Code::Foreign, &place(node), message, "this rule")
                     .help("rules about stoichiometries are not read; write the number into the reaction"));
             }
             let rule = Rule { is_rate, value: self.math(node)?, span: place(node) };
@@ -307,6 +332,7 @@ impl<'b> Reading<'b> {
             let symbol = required(node, "symbol")?.to_owned();
             if !self.has(&symbol) {
                 return Err(Problem::new(
+                    Code::Foreign,
                     &place(node),
                     format!("'{symbol}' is no species, compartment or parameter"),
                     "this",
@@ -412,6 +438,7 @@ impl<'b> Reading<'b> {
             });
             if let Some((name, span)) = bad {
                 return Err(Problem::new(
+                    Code::Foreign,
                     &span,
                     format!("'{id}' begins by the value of '{name}', which moves"),
                     "this",
@@ -504,7 +531,7 @@ impl<'b> Reading<'b> {
         model.definitions.iter().for_each(|(_, value)| look(value));
         match bad {
             Some((name, span)) => {
-                Err(Problem::new(&span, format!("nothing says what '{name}' is"), "this name")
+                Err(Problem::new(Code::Foreign, &span, format!("nothing says what '{name}' is"), "this name")
                     .help("names are those of compartments, species, parameters, functions and reactions"))
             }
             None => Ok(()),
@@ -519,7 +546,7 @@ fn function_definition(
 ) -> Result<(String, (Vec<String>, ForeignExpr)), Problem> {
     let id = required(node, "id")?.to_owned();
     let unread = || {
-        Problem::new(&place(node), format!("the function '{id}' cannot be read"), "this")
+        Problem::new(Code::Foreign, &place(node), format!("the function '{id}' cannot be read"), "this")
             .help("a function is a <lambda>")
     };
     let lambda = child(node, "math").and_then(|math| {

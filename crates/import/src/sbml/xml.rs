@@ -3,7 +3,7 @@
 use super::super::expression::Span;
 use super::super::too_much;
 use palmistry_io::foreign::Budget;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use roxmltree::{Document, Node, ParsingOptions};
 
 /// More elements within elements than this are refused.
@@ -19,9 +19,8 @@ const MOST_ATTRIBUTES: usize = 256;
 pub(super) fn document<'t>(text: &'t str, budget: &Budget) -> Result<Document<'t>, Problem> {
     // what counts its brackets itself needs no stack for them
     if let Some(at) = too_deep(text) {
-        return Err(
-            Problem::new(&(at..at + 1), "elements are nested too deeply", "here").help("this is no model")
-        );
+        return Err(Problem::new(Code::ForeignText, &(at..at + 1), "elements are nested too deeply", "here")
+            .help("this is no model"));
     }
     look_at_attributes(text, budget)?;
     let options = ParsingOptions { nodes_limit: 2_000_000, ..ParsingOptions::default() };
@@ -36,6 +35,7 @@ pub(super) fn document<'t>(text: &'t str, budget: &Budget) -> Result<Document<'t
         let column: usize = rest.chars().take(place.col.saturating_sub(1) as usize).map(char::len_utf8).sum();
         let at = (line + column).min(text.len());
         Problem::new(
+            Code::ForeignText,
             &(at..(at + 1).min(text.len())),
             format!("this is no XML that can be read: {why}"),
             "here",
@@ -79,6 +79,7 @@ fn look_at_attributes(text: &str, budget: &Budget) -> Result<(), Problem> {
         }
         let all = |most: usize, what: &str| {
             Problem::new(
+                Code::ForeignText,
                 &(begin..begin + 1),
                 format!("an element with more than {most} {what}"),
                 "this element",
@@ -149,8 +150,13 @@ pub(super) fn listed<'a, 'b>(node: Node<'a, 'b>, list: &str) -> Vec<Node<'a, 'b>
 /// An attribute that has to be there.
 pub(super) fn required<'a>(node: Node<'a, '_>, name: &str) -> Result<&'a str, Problem> {
     node.attribute(name).map(str::trim).filter(|value| !value.is_empty()).ok_or_else(|| {
-        Problem::new(&place(node), format!("'{}' has no {name}", node.tag_name().name()), "this element")
-            .help(format!("SBML asks for {name}=\"...\" here"))
+        Problem::new(
+            Code::ForeignText,
+            &place(node),
+            format!("'{}' has no {name}", node.tag_name().name()),
+            "this element",
+        )
+        .help(format!("SBML asks for {name}=\"...\" here"))
     })
 }
 

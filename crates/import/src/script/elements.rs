@@ -3,7 +3,7 @@
 use super::super::expression::{ForeignExpr, ForeignKind};
 use super::syntax::Syntax;
 use super::workspace::{MOST_ENTRIES, ScriptValue, ScriptWorkspace};
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 
 impl ScriptWorkspace<'_> {
     /// The whole number that an expression of numbers is, by what definitions stand for.
@@ -64,7 +64,12 @@ impl ScriptWorkspace<'_> {
     pub fn assign_element(&mut self, name: &str, place: usize, value: ForeignExpr) -> Result<(), Problem> {
         let span = value.span.clone();
         if place >= MOST_ENTRIES {
-            return Err(Problem::new(&span, format!("'{name}' would have too many elements"), "this"));
+            return Err(Problem::new(
+                Code::Foreign,
+                &span,
+                format!("'{name}' would have too many elements"),
+                "this",
+            ));
         }
         let (rows, mut entries) = match self.get(name) {
             None | Some(Ok(ScriptValue::Else)) => (1, Vec::new()),

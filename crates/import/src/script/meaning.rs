@@ -3,7 +3,7 @@
 use super::super::expression::{ForeignExpr, ForeignKind, ForeignOrder, Span};
 use super::super::functions::{call, case};
 use super::syntax::{Syntax, SyntaxKind};
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 
 /// A formula of more cases is refused.
 pub(crate) const MOST_CASES: usize = 2000;
@@ -21,7 +21,7 @@ pub(crate) fn named_function(syntax: &Syntax) -> Option<(&str, &[Syntax])> {
 }
 
 fn refused(syntax: &Syntax, what: &str) -> Problem {
-    Problem::new(&syntax.span, format!("{what} is no number"), "this")
+    Problem::new(Code::Foreign, &syntax.span, format!("{what} is no number"), "this")
         .help("a number is meant here: write an expression")
 }
 
@@ -35,7 +35,7 @@ pub(crate) fn meaning(syntax: &Syntax, special: &mut impl FnMut(&Syntax) -> Opti
     match &syntax.kind {
         SyntaxKind::Number(value) => Ok(ForeignExpr::new(ForeignKind::Number(value.clone()), span)),
         SyntaxKind::Name(name) => {
-            Err(Problem::new(span, format!("nothing says what '{name}' is"), "this name")
+            Err(Problem::new(Code::Foreign, span, format!("nothing says what '{name}' is"), "this name")
                 .help("declare it above"))
         }
         SyntaxKind::Sum(terms) => {
@@ -78,8 +78,10 @@ pub(crate) fn meaning(syntax: &Syntax, special: &mut impl FnMut(&Syntax) -> Opti
             None => Err(refused(syntax, &format!("'{name}'"))),
         },
         SyntaxKind::Index(..) => Err(refused(syntax, "an element of something unknown")),
-        SyntaxKind::Prime(_) => Err(Problem::new(span, "a derivative stands in an expression", "this")
-            .help("write what it is equal to: only rates of states may stand on the left")),
+        SyntaxKind::Prime(_) => {
+            Err(Problem::new(Code::Foreign, span, "a derivative stands in an expression", "this")
+                .help("write what it is equal to: only rates of states may stand on the left"))
+        }
     }
 }
 
@@ -111,8 +113,13 @@ fn compared(
         SyntaxKind::Not(inner) => compared(inner, otherwise, then, special),
         SyntaxKind::Compare(sign, left, right) => {
             let order = order(sign).ok_or_else(|| {
-                Problem::new(&condition.span, format!("cases by '{sign}' are not read"), "this condition")
-                    .help("what holds on a thin set alone has no derivative: leave the case out")
+                Problem::new(
+                    Code::Foreign,
+                    &condition.span,
+                    format!("cases by '{sign}' are not read"),
+                    "this condition",
+                )
+                .help("what holds on a thin set alone has no derivative: leave the case out")
             })?;
             let (left, right) = (meaning(left, special)?, meaning(right, special)?);
             Ok(case(left, order, right, then, otherwise))
@@ -131,7 +138,7 @@ fn compared(
 }
 
 fn unread(span: &Span) -> Problem {
-    Problem::new(span, "this condition cannot be read", "this")
+    Problem::new(Code::Foreign, span, "this condition cannot be read", "this")
         .help("one comparison with '<', '<=', '>' or '>='")
 }
 
@@ -159,7 +166,12 @@ fn function(syntax: &Syntax, special: &mut impl FnMut(&Syntax) -> Option<Meant>)
         ) => meaning(inner, special),
         _ => {
             if let Some(keyword) = arguments.iter().find(|one| matches!(one.kind, SyntaxKind::Equation(..))) {
-                return Err(Problem::new(&keyword.span, format!("'{name}' has no such argument"), "this"));
+                return Err(Problem::new(
+                    Code::Foreign,
+                    &keyword.span,
+                    format!("'{name}' has no such argument"),
+                    "this",
+                ));
             }
             let values: Vec<ForeignExpr> =
                 arguments.iter().map(|one| meaning(one, special)).collect::<Result<_, _>>()?;
@@ -171,8 +183,13 @@ fn function(syntax: &Syntax, special: &mut impl FnMut(&Syntax) -> Option<Meant>)
 /// `Piecewise((e, condition), ..., (e, True))`
 fn piecewise(syntax: &Syntax, cases: &[Syntax], special: &mut impl FnMut(&Syntax) -> Option<Meant>) -> Meant {
     if cases.len() > MOST_CASES {
-        return Err(Problem::new(&syntax.span, format!("more than {MOST_CASES} cases"), "this")
-            .help("a table of values is no model: say it as a formula"));
+        return Err(Problem::new(
+            Code::Foreign,
+            &syntax.span,
+            format!("more than {MOST_CASES} cases"),
+            "this",
+        )
+        .help("a table of values is no model: say it as a formula"));
     }
     let mut result: Option<ForeignExpr> = None;
     for one in cases.iter().rev() {
@@ -186,6 +203,7 @@ fn piecewise(syntax: &Syntax, cases: &[Syntax], special: &mut impl FnMut(&Syntax
             }
             (_, None) => {
                 return Err(Problem::new(
+                    Code::Foreign,
                     &condition.span,
                     "nothing is said of what is so elsewhere",
                     "the last case",

@@ -5,7 +5,7 @@ mod lists;
 use super::super::expression::{DEEPEST, Span};
 use super::syntax::{Syntax, SyntaxKind};
 use super::tokens::{Dialect, Token, TokenKind};
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use palmistry_math::number::parse_decimal;
 
 /// Which bracket is the innermost one that is open.
@@ -86,8 +86,13 @@ impl<'a> Parser<'a> {
             TokenKind::End => "the text ends".to_owned(),
             _ => format!("'{}' stands there", token.text),
         };
-        Problem::new(&token.span, format!("expected {wanted}, and {found}"), format!("expected {wanted}"))
-            .help("this is as far as the file was understood")
+        Problem::new(
+            Code::ForeignText,
+            &token.span,
+            format!("expected {wanted}, and {found}"),
+            format!("expected {wanted}"),
+        )
+        .help("this is as far as the file was understood")
     }
 
     /// Whether an expression ends before a word because a line does.
@@ -134,6 +139,7 @@ impl<'a> Parser<'a> {
         self.depth += 1;
         if self.depth > DEEPEST {
             return Err(Problem::new(
+                Code::ForeignText,
                 &self.peek().span,
                 format!("more than {DEEPEST} brackets within brackets"),
                 "here",
@@ -180,8 +186,13 @@ impl<'a> Parser<'a> {
         self.next();
         let right = self.sum()?;
         if self.operator(&["<", "<=", ">", ">=", "==", "!=", "~=", "&&", "||", "&", "|"]).is_some() {
-            return Err(Problem::new(&self.peek().span, "conditions of several parts are not read", "here")
-                .help("write cases within cases, each with one comparison"));
+            return Err(Problem::new(
+                Code::ForeignText,
+                &self.peek().span,
+                "conditions of several parts are not read",
+                "here",
+            )
+            .help("write cases within cases, each with one comparison"));
         }
         let sign = if sign == "~=" { "!=" } else { sign };
         let (begin, end) = (left.span.clone(), right.span.end);
@@ -299,9 +310,8 @@ impl<'a> Parser<'a> {
             self.next();
             powers += 1;
             if powers > DEEPEST {
-                return Err(
-                    Problem::new(&self.peek().span, "a tower of powers", "here").help("write it shorter")
-                );
+                return Err(Problem::new(Code::ForeignText, &self.peek().span, "a tower of powers", "here")
+                    .help("write it shorter"));
             }
             // from the left in MATLAB, from the right elsewhere; a sign of the exponent is its own
             let exponent = match self.dialect {
@@ -309,8 +319,13 @@ impl<'a> Parser<'a> {
                 _ => {
                     self.depth += 1;
                     if self.depth > DEEPEST {
-                        return Err(Problem::new(&self.peek().span, "a tower of powers", "here")
-                            .help("write it shorter"));
+                        return Err(Problem::new(
+                            Code::ForeignText,
+                            &self.peek().span,
+                            "a tower of powers",
+                            "here",
+                        )
+                        .help("write it shorter"));
                     }
                     let exponent = self.exponent()?;
                     self.depth -= 1;
@@ -321,8 +336,13 @@ impl<'a> Parser<'a> {
             base = joined(SyntaxKind::Power(Box::new(base), Box::new(exponent)), &begin, end);
         }
         if self.dialect == Dialect::Python && self.operator(&["^"]).is_some() {
-            return Err(Problem::new(&self.peek().span, "'^' is no power in Python", "this")
-                .help("write '**' for a power"));
+            return Err(Problem::new(
+                Code::ForeignText,
+                &self.peek().span,
+                "'^' is no power in Python",
+                "this",
+            )
+            .help("write '**' for a power"));
         }
         Ok(base)
     }
@@ -380,7 +400,7 @@ impl<'a> Parser<'a> {
             let end = self.tokens[self.at - 1].span.end;
             inner = joined(kind, &begin, end);
         }
-        Err(Problem::new(&inner.span, "calls of calls of calls", "here")
+        Err(Problem::new(Code::ForeignText, &inner.span, "calls of calls of calls", "here")
             .help("give the inner part a name of its own"))
     }
 
@@ -434,7 +454,7 @@ impl<'a> Parser<'a> {
             .map(|c| if matches!(c, 'f' | 'd' | 'D') { 'e' } else { c })
             .collect();
         parse_decimal(&plain).ok_or_else(|| {
-            Problem::new(&token.span, "a number that is too long", "this")
+            Problem::new(Code::ForeignText, &token.span, "a number that is too long", "this")
                 .help("decimals of at most 4096 digits, with an exponent of at most 4096")
         })
     }

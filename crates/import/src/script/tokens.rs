@@ -2,7 +2,7 @@
 
 use super::super::expression::Span;
 use palmistry_io::foreign::Budget;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 
 /// Whose text it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -183,8 +183,13 @@ impl Reading<'_> {
             } else if let Some(c) = rest.chars().next() {
                 self.at += c.len_utf8();
             } else {
-                return Err(Problem::new(&(begin..begin + 2), "this comment does not end", "begins here")
-                    .help("close it with '=#'"));
+                return Err(Problem::new(
+                    Code::ForeignText,
+                    &(begin..begin + 2),
+                    "this comment does not end",
+                    "begins here",
+                )
+                .help("close it with '=#'"));
             }
         }
     }
@@ -233,8 +238,13 @@ impl Reading<'_> {
         }
         let Some(sign) = SIGNS.into_iter().find(|sign| rest.starts_with(*sign)) else {
             let span = self.at..self.at + c.len_utf8();
-            return Err(Problem::new(&span, format!("'{c}' begins nothing that can be read"), "this")
-                .help("take it out, or write what it stands for"));
+            return Err(Problem::new(
+                Code::ForeignText,
+                &span,
+                format!("'{c}' begins nothing that can be read"),
+                "this",
+            )
+            .help("take it out, or write what it stands for"));
         };
         self.at += sign.len();
         Ok(TokenKind::Sign(sign))
@@ -279,8 +289,13 @@ impl Reading<'_> {
             && self.dialect != Dialect::Matlab
             && self.rest().starts_with(['x', 'b', 'o']);
         if is_other_base {
-            return Err(Problem::new(&(begin..self.at + 1), "a number that is no decimal", "this")
-                .help("write it in decimal digits"));
+            return Err(Problem::new(
+                Code::ForeignText,
+                &(begin..self.at + 1),
+                "a number that is no decimal",
+                "this",
+            )
+            .help("write it in decimal digits"));
         }
         Ok(TokenKind::Number)
     }
@@ -311,7 +326,12 @@ impl Reading<'_> {
                 None => break,
             }
         }
-        let problem = Problem::new(&(begin..begin + end.len()), "this text does not end", "begins here");
+        let problem = Problem::new(
+            Code::ForeignText,
+            &(begin..begin + end.len()),
+            "this text does not end",
+            "begins here",
+        );
         Err(problem.help(format!("close it with {end}")))
     }
 }

@@ -6,7 +6,7 @@ use super::super::functions::{self, constant, is_function};
 use super::meaning::{meaning, named_function};
 use super::syntax::{Syntax, SyntaxKind};
 use palmistry_io::foreign::Budget;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A matrix with more entries is refused.
@@ -87,6 +87,7 @@ impl<'b> ScriptWorkspace<'b> {
     pub fn symbol(&mut self, name: &str, span: &Span) -> Valued {
         if self.defined.contains(name) {
             return Err(Problem::new(
+                Code::Foreign,
                 span,
                 format!("'{name}' has a value already, and becomes a symbol here"),
                 "this",
@@ -126,7 +127,7 @@ impl<'b> ScriptWorkspace<'b> {
                 Ok(value.clone())
             }
             Err((span, message, help)) => {
-                Err(Problem { help: help.clone(), ..Problem::new(span, message, "this") })
+                Err(Problem { help: help.clone(), ..Problem::new(Code::Foreign, span, message, "this") })
             }
         })
     }
@@ -232,16 +233,23 @@ impl<'b> ScriptWorkspace<'b> {
                 Some(Ok(ScriptValue::One(one))) => Ok(ForeignExpr { span: part.span.clone(), ..one }),
                 Some(Ok(ScriptValue::Many { entries, .. })) => match <[_; 1]>::try_from(entries) {
                     Ok([one]) => Ok(one),
-                    Err(_) => Err(Problem::new(&part.span, format!("'{name}' is no number"), "this")),
+                    Err(_) => {
+                        Err(Problem::new(Code::Foreign, &part.span, format!("'{name}' is no number"), "this"))
+                    }
                 },
                 Some(Ok(ScriptValue::Else)) => {
-                    Err(Problem::new(&part.span, format!("'{name}' is no number"), "this"))
+                    Err(Problem::new(Code::Foreign, &part.span, format!("'{name}' is no number"), "this"))
                 }
                 Some(Err(problem)) => Err(problem),
                 None => match constant(name, &part.span) {
                     Some(value) if name != "E" => Ok(value),
-                    _ => Err(Problem::new(&part.span, format!("nothing says what '{name}' is"), "this name")
-                        .help(format!("declare '{name}' as a symbol above its use"))),
+                    _ => Err(Problem::new(
+                        Code::Foreign,
+                        &part.span,
+                        format!("nothing says what '{name}' is"),
+                        "this name",
+                    )
+                    .help(format!("declare '{name}' as a symbol above its use"))),
                 },
             }),
             SyntaxKind::Call(..) if part.span != syntax.span => match self.call(part) {
@@ -249,7 +257,7 @@ impl<'b> ScriptWorkspace<'b> {
                 Ok(ScriptValue::Many { entries, .. }) if entries.len() == 1 => {
                     entries.into_iter().next().map(Ok)
                 }
-                Ok(_) => Some(Err(Problem::new(&part.span, "this is no number", "this"))),
+                Ok(_) => Some(Err(Problem::new(Code::Foreign, &part.span, "this is no number", "this"))),
                 Err(problem) => Some(Err(problem)),
             },
             _ => None,
@@ -274,7 +282,7 @@ impl<'b> ScriptWorkspace<'b> {
             let place = if is_whole { self.element(name, &numbers, true) } else { None };
             let inside = place.and_then(|place| entries.get(place).cloned());
             return inside.map(ScriptValue::One).ok_or_else(|| {
-                Problem::new(span, format!("'{name}' has no such element"), "this")
+                Problem::new(Code::Foreign, span, format!("'{name}' has no such element"), "this")
                     .help("elements are counted from 1")
             });
         }
@@ -304,13 +312,13 @@ impl<'b> ScriptWorkspace<'b> {
                 let mut size = |one: &Syntax| -> Result<usize, Problem> {
                     self.count(one)?
                         .filter(|value| *value <= MOST_ENTRIES)
-                        .ok_or_else(|| Problem::new(&one.span, "this is no size", "this"))
+                        .ok_or_else(|| Problem::new(Code::Foreign, &one.span, "this is no size", "this"))
                 };
                 let rows = size(&sizes[0])?;
                 let columns = size(&sizes[sizes.len() - 1])?;
                 let count = rows.saturating_mul(columns);
                 if count > MOST_ENTRIES {
-                    return Err(Problem::new(span, "a matrix of too many entries", "this"));
+                    return Err(Problem::new(Code::Foreign, span, "a matrix of too many entries", "this"));
                 }
                 Ok(ScriptValue::Many { rows, entries: vec![value; count] })
             }
@@ -341,8 +349,13 @@ impl<'b> ScriptWorkspace<'b> {
             // of each entry, as MATLAB has it
             (_, [inner]) if is_function(name) => match self.value(inner)? {
                 ScriptValue::One(one) => functions::call(name, vec![one], span).map(ScriptValue::One),
-                _ => Err(Problem::new(span, format!("'{name}' of a vector is not read"), "this")
-                    .help("write it for each element")),
+                _ => Err(Problem::new(
+                    Code::Foreign,
+                    span,
+                    format!("'{name}' of a vector is not read"),
+                    "this",
+                )
+                .help("write it for each element")),
             },
             _ => self.one(syntax).map(ScriptValue::One),
         }
@@ -356,7 +369,7 @@ impl<'b> ScriptWorkspace<'b> {
         {
             return self.symbol(text, span);
         }
-        Err(Problem::new(&syntax.span, "this call cannot be read", "this"))
+        Err(Problem::new(Code::Foreign, &syntax.span, "this call cannot be read", "this"))
     }
 }
 
@@ -386,8 +399,13 @@ fn symbol_names(text: &str, span: &Span) -> Result<Vec<String>, Problem> {
                 let first = begin[stem.len()..].parse::<usize>().unwrap_or(0);
                 let last = end.parse::<usize>().ok().filter(|last| *last <= MOST_ENTRIES);
                 let Some(last) = last else {
-                    return Err(Problem::new(span, format!("'{word}' names no range of symbols"), "this")
-                        .help("write them one by one"));
+                    return Err(Problem::new(
+                        Code::Foreign,
+                        span,
+                        format!("'{word}' names no range of symbols"),
+                        "this",
+                    )
+                    .help("write them one by one"));
                 };
                 names.extend((first..last).map(|index| format!("{stem}{index}")));
             }
@@ -415,7 +433,8 @@ fn each(value: ScriptValue, of: impl Fn(ForeignExpr) -> ForeignExpr) -> ScriptVa
 }
 
 fn unlike(span: &Span) -> Problem {
-    Problem::new(span, "matrices of these sizes do not go together", "here").help("write the elements out")
+    Problem::new(Code::Foreign, span, "matrices of these sizes do not go together", "here")
+        .help("write the elements out")
 }
 
 /// A sum that goes on with another term: sums stay flat, however long they are.
@@ -481,7 +500,12 @@ fn multiplied(left: ScriptValue, right: ScriptValue, divided: bool, span: &Span)
         {
             let columns = b.len() / inner;
             if rows.saturating_mul(columns).saturating_mul(inner) > MOST_ENTRIES {
-                return Err(Problem::new(span, "a product of matrices that are too large", "this"));
+                return Err(Problem::new(
+                    Code::Foreign,
+                    span,
+                    "a product of matrices that are too large",
+                    "this",
+                ));
             }
             let mut entries = Vec::new();
             for row in 0..rows {
@@ -523,7 +547,9 @@ fn stacked(rows: Vec<Vec<ScriptValue>>, span: &Span) -> Valued {
             .map(|block| match block {
                 ScriptValue::One(one) => Ok((1, vec![one])),
                 ScriptValue::Many { rows, entries } => Ok((rows, entries)),
-                ScriptValue::Else => Err(Problem::new(span, "a matrix of what is no number", "this")),
+                ScriptValue::Else => {
+                    Err(Problem::new(Code::Foreign, span, "a matrix of what is no number", "this"))
+                }
             })
             .collect::<Result<_, _>>()?;
         let blocks: Vec<(usize, Vec<ForeignExpr>)> =
@@ -544,7 +570,7 @@ fn stacked(rows: Vec<Vec<ScriptValue>>, span: &Span) -> Valued {
         }
         height += tall;
         if entries.len() > MOST_ENTRIES {
-            return Err(Problem::new(span, "a matrix of too many entries", "this"));
+            return Err(Problem::new(Code::Foreign, span, "a matrix of too many entries", "this"));
         }
     }
     Ok(ScriptValue::Many { rows: height, entries })

@@ -3,7 +3,7 @@
 use super::super::expression::ForeignExpr;
 use super::super::script::{Parser, ScriptValue, TokenKind};
 use super::Script;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 
 /// Loops within loops beyond this are not read, nor more statements within loops than that.
 const DEEPEST_LOOP: usize = 8;
@@ -15,12 +15,22 @@ impl Script<'_> {
         let begin = parser.next().span.clone();
         self.deep += 1;
         if self.deep > DEEPEST_LOOP {
-            return Err(Problem::new(&begin, format!("more than {DEEPEST_LOOP} loops within loops"), "here"));
+            return Err(Problem::new(
+                Code::Foreign,
+                &begin,
+                format!("more than {DEEPEST_LOOP} loops within loops"),
+                "here",
+            ));
         }
         let in_brackets = parser.take("(");
         let variable = parser.next();
         if variable.kind != TokenKind::Name || !parser.take("=") {
-            return Err(Problem::new(&variable.span, "expected a loop such as 'for i = 1:3'", "here"));
+            return Err(Problem::new(
+                Code::Foreign,
+                &variable.span,
+                "expected a loop such as 'for i = 1:3'",
+                "here",
+            ));
         }
         let numbers = self.loop_numbers(parser)?;
         if in_brackets && !parser.take(")") {
@@ -42,7 +52,8 @@ impl Script<'_> {
                     } else {
                         "these loops have too many steps"
                     };
-                    return Err(Problem::new(&begin, why, "this loop").help("write the model without it"));
+                    return Err(Problem::new(Code::Foreign, &begin, why, "this loop")
+                        .help("write the model without it"));
                 }
                 self.repetitions += 1;
                 self.statement(parser)?;
@@ -73,7 +84,7 @@ impl Script<'_> {
             parts.push(self.workspace.value(&next)?);
         }
         let no = || {
-            Problem::new(&first.span, "a loop goes through whole numbers", "these")
+            Problem::new(Code::Foreign, &first.span, "a loop goes through whole numbers", "these")
                 .help("write them as 1:3, or as [1 2 3]")
         };
         let mut numbers = Vec::new();

@@ -11,7 +11,7 @@ use super::script::{
 };
 use dashu::rational::RBig;
 use palmistry_io::foreign::Budget;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use std::collections::BTreeSet;
 
 /// The variables by which these programs know a model.
@@ -64,7 +64,7 @@ pub(super) fn read(
     script.all(&words)?;
     if let Some(wanted) = script.which.as_ref().filter(|_| script.saves > 0 && script.title.is_none()) {
         let message = format!("the file saves no model '{wanted}'");
-        return Err(Problem::new(&(0..text.len().min(1)), message, "the file")
+        return Err(Problem::new(Code::Foreign, &(0..text.len().min(1)), message, "the file")
             .help("models are named by what 'save' calls them"));
     }
     let mut model = script.model(text)?;
@@ -115,6 +115,7 @@ impl Script<'_> {
         }
         if let Some(control) = CONTROL.iter().find(|control| word.is_word(control)) {
             return Err(Problem::new(
+                Code::Foreign,
                 &word.span,
                 format!("'{control}' is not read: nothing of a script is run"),
                 "this",
@@ -193,6 +194,7 @@ impl Script<'_> {
             }
             if word.kind != TokenKind::Name {
                 return Err(Problem::new(
+                    Code::Foreign,
                     &word.span,
                     format!("'{}' is no name of a symbol", word.text),
                     "this",
@@ -221,7 +223,7 @@ impl Script<'_> {
         let (count, name) = (self.saves.to_string(), names.first().cloned());
         if self.which.is_none() && self.saves > 1 {
             let message = format!("the file saves a second model, '{}'", name.unwrap_or_default());
-            return Err(Problem::new(&span, message, "the second one")
+            return Err(Problem::new(Code::Foreign, &span, message, "the second one")
                 .help("say which with --model NAME or --model NUMBER; what is assigned behind the first belongs to the second"));
         }
         let is_asked = |which: &String| *which == count || Some(which) == name.as_ref();
@@ -272,7 +274,8 @@ impl Script<'_> {
                     }
                 }
                 Ok(_) => {
-                    let why = Problem::new(&right.span, "an element is one number", "this is none");
+                    let why =
+                        Problem::new(Code::Foreign, &right.span, "an element is one number", "this is none");
                     self.workspace.break_name(&name, why);
                 }
                 Err(why) => self.workspace.break_name(&name, why),
@@ -284,7 +287,8 @@ impl Script<'_> {
             .map(|target| {
                 target.as_name().map(str::to_owned).ok_or_else(|| {
                     let message = "an element of something is assigned to: that is not read";
-                    Problem::new(&target.span, message, "this").help("assign the whole vector at once")
+                    Problem::new(Code::Foreign, &target.span, message, "this")
+                        .help("assign the whole vector at once")
                 })
             })
             .collect::<Result<Vec<_>, _>>()?;
@@ -294,7 +298,7 @@ impl Script<'_> {
                 let entries = value.entries().unwrap_or_default();
                 if entries.len() != names.len() {
                     let message = format!("{} names, and {} values", names.len(), entries.len());
-                    return Err(Problem::new(&right.span, message, "these values"));
+                    return Err(Problem::new(Code::Foreign, &right.span, message, "these values"));
                 }
                 for (name, entry) in names.iter().zip(entries) {
                     self.workspace.assign(name, ScriptValue::One(entry));
@@ -305,7 +309,7 @@ impl Script<'_> {
                 for name in names {
                     let why = Problem {
                         help: why.help.clone(),
-                        ..Problem::new(&why.span, why.message.clone(), "this")
+                        ..Problem::new(Code::Foreign, &why.span, why.message.clone(), "this")
                     };
                     self.workspace.break_name(name, why);
                 }
@@ -328,7 +332,7 @@ impl Script<'_> {
     fn required(&self, name: &str, what: &str, text: &str) -> Result<Vec<ForeignExpr>, Problem> {
         self.vector(name)?.ok_or_else(|| {
             let message = format!("the file does not say what {name} is: {what}");
-            Problem::new(&(0..text.len().min(1)), message, "the file")
+            Problem::new(Code::Foreign, &(0..text.len().min(1)), message, "the file")
                 .help("model files have x (states), p (parameters), f (rates), h (outputs), u and w (inputs)")
         })
     }
@@ -344,15 +348,21 @@ impl Script<'_> {
         if states.len() != rates.len() {
             let message = format!("{} states, and {} rates", states.len(), rates.len());
             let span = rates.last().map_or(0..0, |rate| rate.span.clone());
-            return Err(Problem::new(&span, message, "the last rate").help("x and f have as many elements"));
+            return Err(Problem::new(Code::Foreign, &span, message, "the last rate")
+                .help("x and f have as many elements"));
         }
         let mut model =
             ForeignModel { definitions: self.workspace.definitions.clone(), ..ForeignModel::default() };
         let mut seen = BTreeSet::new();
         let mut new = |name: &str, span: &Span| {
             let twice = || {
-                Problem::new(span, format!("x, p, u and w have the symbol '{name}' twice"), "this symbol")
-                    .help("two variables of the script may be one symbol: give each a symbol of its own")
+                Problem::new(
+                    Code::Foreign,
+                    span,
+                    format!("x, p, u and w have the symbol '{name}' twice"),
+                    "this symbol",
+                )
+                .help("two variables of the script may be one symbol: give each a symbol of its own")
             };
             if seen.insert(name.to_owned()) { Ok(()) } else { Err(twice()) }
         };
@@ -421,8 +431,13 @@ fn names_only(list: &str, entries: Vec<ForeignExpr>) -> Result<Vec<(String, Span
         .into_iter()
         .map(|entry| match entry.kind {
             ForeignKind::Name(name) => Ok((name, entry.span)),
-            _ => Err(Problem::new(&entry.span, format!("an element of {list} is no symbol"), "this")
-                .help(format!("{list} has symbols alone"))),
+            _ => Err(Problem::new(
+                Code::Foreign,
+                &entry.span,
+                format!("an element of {list} is no symbol"),
+                "this",
+            )
+            .help(format!("{list} has symbols alone"))),
         })
         .collect()
 }

@@ -5,7 +5,7 @@ use super::{Refused, Tell};
 use palmistry_io::UNINTERRUPTED;
 use palmistry_io::foreign::shown;
 use palmistry_prove::claim::{Kept, decide_all_keeping};
-use palmistry_report::{Colour, Layout, claim_json, claim_text, formula_mathml};
+use palmistry_report::{Colour, Layout, claim_json, claim_text, formula_mathml_in};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
@@ -24,7 +24,7 @@ pub(super) fn claims(
     let layout = Layout { width: Some(COLUMNS), colour: Colour::Plain };
     decide_all_keeping(Kept::Verdicts, &system, seed, &UNINTERRUPTED, &|outcome| {
         let mut claim = claim_json(outcome);
-        claim["mathml"] = json!(formula_mathml(&outcome.statement));
+        claim["mathml"] = json!(formula_mathml_in(&outcome.statement, &outcome.looks));
         // a verdict is kept while its claim moves up and down
         let (line, column) = outcome.place;
         let place = format!("  {}:{line}:{column}", shown(&outcome.file));

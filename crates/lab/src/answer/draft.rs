@@ -2,17 +2,13 @@
 
 use super::place::Place;
 use dashu::rational::RBig;
-use maud::{Markup, PreEscaped, html};
 use palmistry_lang::{Declaration, DeclarationKind, Dimension, Kind, Range, System, Time, without_claims};
 use palmistry_lsp::Draft;
-use palmistry_math::expression::{NodeId, Symbol};
+use palmistry_math::expression::Symbol;
 use palmistry_math::number::rational_to_f64;
-use palmistry_report::formula_mathml;
+use palmistry_report::{formula_mathml_in, system_mathematics};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
-
-/// Expressions that are longer as texts are not shown as formulas.
-const LONGEST: usize = 1500;
 
 pub(super) fn draft(place: &Place<'_>) -> Value {
     let draft = place.draft();
@@ -44,7 +40,7 @@ pub(super) fn draft(place: &Place<'_>) -> Value {
             .collect();
         found["signals"] = json!(signals);
         found["maps"] = maps(system);
-        found["mathematics"] = json!(mathematics(system).into_string());
+        found["mathematics"] = json!(system_mathematics(system).into_string());
     }
     found
 }
@@ -133,7 +129,7 @@ fn symbols(system: &System) -> Value {
             "high": high,
             "value": info.default.as_ref().map(rational_to_f64),
             "dimension": system.dimension_of(symbol).map(Dimension::in_words),
-            "mathml": formula_mathml(name),
+            "mathml": formula_mathml_in(name, &system.looks),
         }))
     };
     system.symbols().filter_map(symbol).collect()
@@ -162,46 +158,4 @@ fn maps(system: &System) -> Value {
         json!({ "title": map.title, "x": axis(&map.axes[0]), "y": axis(&map.axes[1]), "at": at, "of": map.of, "order": map.order })
     };
     system.maps.iter().map(map).collect()
-}
-
-/// The system as a paper writes it: each field with its components, and the outputs.
-fn mathematics(system: &System) -> Markup {
-    let mark = if system.time == Time::Discrete { "+" } else { "\u{2032}" };
-    html! {
-        @for field in &system.fields {
-            p.field { (field.role.name()) " " b { (field.name) } }
-            table.system {
-                @for (state, rate) in &field.components {
-                    tr {
-                        td { (formula(system.symbol_name(*state))) (mark) }
-                        td { "=" }
-                        td { (node(system, *rate)) }
-                    }
-                }
-            }
-        }
-        @if !system.outputs.is_empty() {
-            p.field { "outputs" }
-            table.system {
-                @for (text, _) in &system.outputs {
-                    tr { td { (formula(text)) } }
-                }
-            }
-        }
-    }
-}
-
-fn node(system: &System, node: NodeId) -> Markup {
-    formula(&system.graph.text(node))
-}
-
-fn formula(text: &str) -> Markup {
-    let mathml = if text.len() > LONGEST { None } else { formula_mathml(text) };
-    match mathml {
-        Some(formula) => PreEscaped(formula),
-        None => {
-            let short: String = text.chars().take(LONGEST).collect();
-            html! { code { (short) @if short.len() < text.len() { " ..." } } }
-        }
-    }
 }

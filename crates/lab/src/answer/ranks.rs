@@ -9,7 +9,8 @@ use palmistry_rank::sweep::{
     GlobalAnswer, RankQuestion, SolutionsWanted, answer_rank, answer_solutions_telling,
 };
 use palmistry_report::{
-    drops_json, drops_text, formula_mathml, global_json, global_text, rank_json, rank_text, unseen_field_text,
+    drops_json, drops_text, formula_mathml_in, global_json, global_text, rank_json, rank_text,
+    unseen_field_text,
 };
 use serde_json::{Value, json};
 use std::sync::Mutex;
@@ -27,11 +28,12 @@ pub(super) fn rank(place: &Place<'_>, samples: u64, tell: Tell<'_>) -> Result<Va
         ..RankQuestion::default()
     };
     let answer = answer_rank(&mut system, &question).map_err(|why| Refused::new(why.to_string()))?;
+    let looks = system.looks.clone();
     let field = |field: &UnseenField| {
         let components: Vec<Value> = field
             .components
             .iter()
-            .map(|part| json!({ "of": part.name, "mathml": [formula_mathml(&part.name), formula_mathml(&part.text)], "text": part.text }))
+            .map(|part| json!({ "of": part.name, "mathml": [formula_mathml_in(&part.name, &looks), formula_mathml_in(&part.text, &looks)], "text": part.text }))
             .collect();
         json!({ "text": unseen_field_text(field), "components": components })
     };
@@ -43,7 +45,7 @@ pub(super) fn rank(place: &Place<'_>, samples: u64, tell: Tell<'_>) -> Result<Va
             "fields": motions.map_or(&[][..], |found| &found.fields).iter().map(field).collect::<Vec<_>>(),
             "for_all_parameters": motions.is_none_or(|found| found.for_all_parameters),
             "fields_missing": motions.map(|found| found.fields_missing),
-            "functions": functions.iter().map(|one| json!({ "text": one.text, "mathml": formula_mathml(&one.text) })).collect::<Vec<_>>(),
+            "functions": functions.iter().map(|one| json!({ "text": one.text, "mathml": formula_mathml_in(&one.text, &looks) })).collect::<Vec<_>>(),
             "functions_missing": motions.map(|found| found.functions_missing),
         })
     };

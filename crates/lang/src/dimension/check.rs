@@ -230,7 +230,12 @@ impl Checker<'_> {
 
     fn item(&mut self, item: &Item) {
         match item {
-            Item::System { .. } | Item::Use { .. } | Item::State(_) | Item::Param(_) | Item::Angle(_) => {}
+            Item::System { .. }
+            | Item::Use { .. }
+            | Item::State(_)
+            | Item::Param(_)
+            | Item::Angle(_)
+            | Item::Looks(_) => {}
             Item::Let { name, dimension, value: expr } => {
                 let mut found = self.quantity(expr);
                 if let Some(dimension) = dimension {

@@ -1,5 +1,6 @@
 //! Mistakes in dimensions, at their places.
 
+use super::super::codes::Code;
 use super::check::Checker;
 use super::form::Form;
 use super::problem::Asked;
@@ -41,7 +42,8 @@ impl Checker<'_> {
         if help.is_empty() {
             help.extend(asked.advice([left, right]).map(str::to_owned));
         }
-        let mut problem = Problem::new(place, asked.message(&left_text, &right_text), asked.label());
+        let mut problem =
+            Problem::new(Code::Dimension, place, asked.message(&left_text, &right_text), asked.label());
         if !help.is_empty() {
             problem = problem.help(help.join("; "));
         }

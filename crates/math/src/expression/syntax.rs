@@ -120,6 +120,17 @@ impl Relation {
         !matches!(self, Relation::Equal | Relation::NotEqual)
     }
 
+    /// What the right side is to the left one.
+    pub fn turned(self) -> Relation {
+        match self {
+            Relation::Less => Relation::Greater,
+            Relation::AtMost => Relation::AtLeast,
+            Relation::Greater => Relation::Less,
+            Relation::AtLeast => Relation::AtMost,
+            same => same,
+        }
+    }
+
     /// Whether it puts the left side below the right one.
     pub fn points_up(self) -> bool {
         matches!(self, Relation::Less | Relation::AtMost)

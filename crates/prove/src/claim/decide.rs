@@ -205,6 +205,9 @@ fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) ->
         },
         basis,
         follows: claim.follows.as_ref().map(|reference| reference.text()),
+        passage: claim.passage.clone(),
+        conclusion: claim.conclusion.clone(),
+        looks: system.looks.clone(),
         pole_of: claim.body.pole_of().map(|expr| in_one_line(&system.source, &expr.span)),
         verdict,
         domain,
@@ -374,7 +377,7 @@ fn attempt(
     }
     let question = match equation.relation {
         Relation::Equal => Question::new(system, left, right)?,
-        _ => Question::relations(system, statement, &mut guards)?,
+        _ => Question::unequal(system, statement, (left, right), &mut guards)?,
     };
     if let Question::Relations { .. } = question {
         notes.domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();

@@ -1,6 +1,6 @@
 //! Claims about a rank at all states, `rank = 6 except where g*omega0 = 0`, and what the checker needs of them.
 
-use super::question::{Question, guards_of_conditions};
+use super::question::{BOUNDS_ARE_NOT_CHECKED, Question, guards_of_conditions};
 use super::verdict::{Verdict, Witness};
 use crate::drops::{
     ClaimedEverywhere, Everywhere, MinorIdentity, NamedSet, StatesOfCases, decide_everywhere,
@@ -53,6 +53,18 @@ pub(super) fn read(
         Question::Codistribution { claimed } => (None, *claimed),
         _ => return Err("'except where' is said of a rank".to_owned()),
     };
+    let may_be_greater = match rank.number() {
+        Some(_) => false,
+        None if rank.most == usize::MAX => true,
+        None => {
+            return Err(
+                "a rank is nowhere greater than it is generically: 'everywhere' and 'except where' take \
+                        rank = n or rank >= n"
+                    .to_owned(),
+            );
+        }
+    };
+    let rank = rank.least;
     for guard in guards_of_conditions(system, statement)? {
         add_guard(&system.graph, &mut guards, guard);
     }
@@ -65,7 +77,15 @@ pub(super) fn read(
     }
     guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
     let sets = except.iter().map(|set| left_out(system, set, &guards)).collect::<Result<_, _>>()?;
-    Ok(ClaimedEverywhere { matrix, rank, guards, conditions, except: sets, with_examples: false })
+    Ok(ClaimedEverywhere {
+        matrix,
+        rank,
+        may_be_greater,
+        guards,
+        conditions,
+        except: sets,
+        with_examples: false,
+    })
 }
 
 /// A set that is left out. What its equations need to exist is needed of its own states, and not of those that the claim is about.
@@ -101,7 +121,9 @@ pub(super) fn decide(
         Everywhere::Proved { cases: (cases, empty), minors, examples, beside, log2_error } => {
             let engine = format!("{ENGINE}, in {cases} cases, {empty} of them empty");
             let mut evidence = Vec::new();
-            if claim.with_examples {
+            if claim.with_examples && claim.may_be_greater {
+                evidence.push(Evidence::Unchecked(BOUNDS_ARE_NOT_CHECKED.to_owned()));
+            } else if claim.with_examples {
                 evidence.extend(minors.iter().map(|minor| identity(system, minor, log2_error, rng)));
                 evidence.extend(on_the_cases(system, claim, examples, rng));
             }
@@ -121,7 +143,7 @@ pub(super) fn decide(
             let witness = Witness {
                 state: state.describe(system),
                 left: found.to_string(),
-                right: claim.rank.to_string(),
+                right: claim.in_words(),
                 entry: None,
                 refutation: None,
             };
@@ -140,7 +162,7 @@ pub(super) fn decide(
         }
         Everywhere::RefutedAt { state, at_most, set, log2_error } => {
             let left = if at_most == 0 { "0".to_owned() } else { format!("at most {at_most}") };
-            let right = claim.rank.to_string();
+            let right = claim.in_words();
             let witness = Witness { state, left, right, entry: None, refutation: None };
             let chance = match log2_error.is_finite() {
                 true => format!(" (error probability below 2^{:.0})", log2_error.ceil()),

@@ -8,6 +8,7 @@
 
 mod branches;
 mod cells;
+mod claimed_ranks;
 mod decide;
 mod defaults;
 mod everywhere;

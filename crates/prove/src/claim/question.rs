@@ -1,5 +1,6 @@
 //! What a statement asks, once its sides are read.
 
+use super::claimed_ranks::ClaimedRanks;
 use super::evidence::{RankedMatrix, claimed_rank, identity};
 use super::terms::OnBranch;
 use super::verdict::Verdict;
@@ -9,6 +10,9 @@ use palmistry_math::expression::syntax::Relation;
 use palmistry_math::expression::{Guard, Need, NodeId, add_guard};
 use rand_chacha::ChaCha8Rng;
 
+/// Said of what is kept for the checkers, which know ranks and no bounds of them.
+pub(super) const BOUNDS_ARE_NOT_CHECKED: &str = "bounds of a rank are not checked";
+
 /// What a statement asks.
 pub(super) enum Question {
     /// Are the entries of two matrices equal, the left ones first?
@@ -16,9 +20,9 @@ pub(super) enum Question {
     /// Do inequalities hold? The left sides first.
     Relations { entries: Vec<NodeId>, relations: Vec<Relation> },
     /// Has a matrix this rank?
-    Rank { entries: Vec<NodeId>, columns: usize, claimed: usize },
+    Rank { entries: Vec<NodeId>, columns: usize, claimed: ClaimedRanks },
     /// Has the observability codistribution this rank?
-    Codistribution { claimed: usize },
+    Codistribution { claimed: ClaimedRanks },
     /// Are these functions of what is measured, all of them, or is none?
     Visible { functions: Vec<NodeId>, is_seen: bool },
 }
@@ -47,6 +51,37 @@ impl Question {
         Ok(Question::Relations { entries, relations })
     }
 
+    /// A statement with `<`, `<=`, `>` or `>=`: bounds of a rank, or inequalities between numbers.
+    pub fn unequal(
+        system: &mut System,
+        statement: &Statement,
+        (left, right): (Value, Value),
+        guards: &mut Vec<Guard>,
+    ) -> Result<Question, String> {
+        let first = statement.equation.relation;
+        let (of_rank, bound, relation) = match (left, right) {
+            (rank @ (Value::Rank(_) | Value::CodistributionRank), Value::Scalar(bound)) => {
+                (rank, bound, first)
+            }
+            (Value::Scalar(bound), rank @ (Value::Rank(_) | Value::CodistributionRank)) => {
+                (rank, bound, first.turned())
+            }
+            _ => return Question::relations(system, statement, guards),
+        };
+        let mut relations = vec![(relation, claimed_integer(system, bound)?)];
+        for further in &statement.further {
+            let bound = system.scalar(&further.right).map_err(|problem| problem.message)?;
+            relations.push((further.relation, claimed_integer(system, bound)?));
+        }
+        let claimed = ClaimedRanks::of(&relations)?;
+        Ok(match of_rank {
+            Value::Rank(matrix) => {
+                Question::Rank { entries: matrix.entries, columns: matrix.columns, claimed }
+            }
+            _ => Question::Codistribution { claimed },
+        })
+    }
+
     pub fn is_of_a_rank(&self) -> bool {
         matches!(self, Question::Rank { .. } | Question::Codistribution { .. } | Question::Visible { .. })
     }
@@ -60,10 +95,7 @@ impl Question {
     }
 
     pub fn new(system: &System, left: Value, right: Value) -> Result<Question, String> {
-        let claimed = |id: NodeId| {
-            let claimed = claimed_integer(system, id)?;
-            usize::try_from(claimed).map_err(|_| format!("a rank is never {claimed}"))
-        };
+        let claimed = |id: NodeId| ClaimedRanks::of(&[(Relation::Equal, claimed_integer(system, id)?)]);
         match (left, right) {
             (Value::Scalar(l), Value::Scalar(r)) => {
                 Ok(Question::Identity { entries: vec![l, r], columns: 1 })
@@ -99,11 +131,16 @@ impl Question {
                 return Some(identity(system, on, engine, *log2_error, rng));
             }
             (Question::Identity { .. } | Question::Relations { .. }, _) => return None,
+            (Question::Rank { claimed, .. } | Question::Codistribution { claimed }, _)
+                if claimed.number().is_none() =>
+            {
+                return Some(Evidence::Unchecked(BOUNDS_ARE_NOT_CHECKED.to_owned()));
+            }
             (Question::Rank { entries, columns, claimed }, _) => {
-                RankedMatrix::of_file(entries, *columns, *claimed)
+                RankedMatrix::of_file(entries, *columns, claimed.least)
             }
             (Question::Codistribution { claimed }, _) => {
-                match RankedMatrix::codistribution(system, &on.branch, *claimed) {
+                match RankedMatrix::codistribution(system, &on.branch, claimed.least) {
                     Ok(matrix) => matrix,
                     Err(_) if !matches!(verdict, Verdict::Proved { .. } | Verdict::Refuted { .. }) => {
                         return None;

@@ -1,5 +1,6 @@
 //! Ranks of rows in which functions are met: no more than what the functions are known to satisfy leaves, no less than at a state.
 
+use super::claimed_ranks::ClaimedRanks;
 use super::rank_witness::best_state;
 use super::terms::OnBranch;
 use super::verdict::{Verdict, Witness};
@@ -39,7 +40,7 @@ pub(super) fn by_bounds(
     system: &mut System,
     rows: &Rows<'_>,
     limits: Limits,
-    claimed: usize,
+    claimed: ClaimedRanks,
     rng: &mut impl Rng,
 ) -> Verdict {
     let guards = rows.on.terms.guards.clone();
@@ -71,13 +72,18 @@ pub(super) fn by_bounds(
         true => rank.to_string(),
         false => format!("{bound} {rank}"),
     };
-    if lower > claimed {
+    if lower > claimed.most {
         return refuted(word("at least", lower));
     }
-    if upper < claimed {
+    if upper < claimed.least {
         return refuted(word("at most", upper));
     }
-    if lower < upper {
+    if upper <= claimed.most && claimed.least == 0 {
+        // at no state it is more
+        return Verdict::Proved { engine: format!("{BOUNDS}{}", rows.scope), log2_error };
+    }
+    let is_settled = claimed.least <= lower && upper <= claimed.most;
+    if !is_settled {
         let why = related.err().map_or(String::new(), |why| format!("; {why}"));
         return Verdict::undecided(format!(
             "the rank is at least {lower} at a state and at most {upper} at any, and it is not known which{why}"
@@ -93,7 +99,8 @@ pub(super) fn by_bounds(
         .map(|coordinate| format!("{} = {}", coordinate.name, coordinate.exact))
         .collect();
     Verdict::undecided(format!(
-        "the rank is generically {lower} around {}; that it is so on every component of the domain is not shown",
+        "the rank is generically {} around {}; that it is so on every component of the domain is not shown",
+        word("at least", lower),
         place.join(", ")
     ))
 }

@@ -1,5 +1,6 @@
 //! A state in exact numbers at which a matrix has not the rank that was claimed.
 
+use super::claimed_ranks::ClaimedRanks;
 use super::terms::{OnBranch, Point, Values};
 use super::verdict::{Verdict, Witness};
 use dashu::rational::RBig;
@@ -13,11 +14,11 @@ const BITS: usize = 400;
 /// How many states are tried.
 const ATTEMPTS: usize = 60;
 
-/// Two ranks: that at almost all states, and another that was claimed.
+/// The rank at almost all states, and what was claimed of it, which it is not.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ranks {
     pub generic: usize,
-    pub claimed: usize,
+    pub claimed: ClaimedRanks,
 }
 
 impl Ranks {

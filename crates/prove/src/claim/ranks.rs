@@ -1,5 +1,6 @@
 //! Claims about ranks: of a matrix, or of the observability codistribution, at almost all states of a set.
 
+use super::claimed_ranks::ClaimedRanks;
 use super::existence::{Existence, existence};
 use super::identity::{OnOneBranch, RANDOM_PRIMES};
 use super::rank_bounds::{Limits, Rows, by_bounds};
@@ -18,12 +19,12 @@ pub(super) const MINOR_OF_SERIES: &str =
     "a minor of the differentials of power series that is not zero modulo a prime";
 pub(super) const SERIES: &str = "power series at random points of random prime fields";
 
-/// Decides `rank(M) = claimed` on a branch; the entries are the sides of the terms.
+/// Decides `rank(M) = claimed`, or a bound of it, on a branch; the entries are the sides of the terms.
 pub(crate) fn decide_rank(
     system: &mut System,
     on: &OnBranch,
     columns: usize,
-    claimed: usize,
+    claimed: ClaimedRanks,
     rng: &mut impl Rng,
 ) -> OnOneBranch {
     let entries = on.terms.sides.clone();
@@ -33,7 +34,7 @@ pub(crate) fn decide_rank(
     on_one_branch(exists, || decide(system, &rows, limits, claimed, rng))
 }
 
-/// Decides `rank = claimed` for the codistribution, on the states of a branch.
+/// Decides `rank = claimed`, or a bound of it, for the codistribution, on the states of a branch.
 ///
 /// # Errors
 /// In words: there is no codistribution, or it tells apart what the conditions leave open.
@@ -41,7 +42,7 @@ pub(crate) fn decide_codistribution(
     system: &mut System,
     on: &OnBranch,
     branch: &Branch,
-    claimed: usize,
+    claimed: ClaimedRanks,
     rng: &mut impl Rng,
 ) -> Result<OnOneBranch, String> {
     if system.outputs.is_empty() || system.unknown_count() == 0 {
@@ -79,7 +80,7 @@ pub(crate) fn decide_codistribution(
         return Ok(on_one_branch(exists, || by_series(rank, claimed, log2_error, witness)));
     }
     let entries = system.graph.substitute(&words.entries(), &branch.values);
-    if !words.is_final() && !words.guessed && found <= claimed && found < columns {
+    if !words.is_final() && !words.guessed && !claimed.stays(found..=columns) {
         return Err(format!(
             "Lie derivatives up to order {} give the rank {found}; the fields leave these states, so that higher ones may add \
              to it (to claim a rank for some Lie derivatives, write rank([d(...); ...]))",
@@ -113,12 +114,12 @@ pub(super) fn on_one_branch(exists: Existence, verdict: impl FnOnce() -> Verdict
 /// What is known of the rank without words; where it is another one, a state at which the words show it, if they do.
 fn by_series(
     rank: usize,
-    claimed: usize,
+    claimed: ClaimedRanks,
     log2_error: f64,
     witness: impl FnOnce(Ranks) -> Option<Witness>,
 ) -> Verdict {
     let engine = if log2_error == f64::NEG_INFINITY { MINOR_OF_SERIES } else { SERIES }.to_owned();
-    if rank == claimed {
+    if claimed.holds(rank) {
         return Verdict::Proved { engine, log2_error };
     }
     let ranks = Ranks { generic: rank, claimed };
@@ -130,12 +131,14 @@ pub(super) fn decide(
     system: &mut System,
     rows: &Rows<'_>,
     limits: Limits,
-    claimed: usize,
+    claimed: ClaimedRanks,
     rng: &mut impl Rng,
 ) -> Verdict {
     let is_angle = &system.angle_test();
     match generic_rank(&mut system.graph, rows.entries, rows.columns, is_angle, rng) {
-        GenericRank::Rank { rank, log2_error, .. } if rank == claimed => {
+        GenericRank::Rank { rank, log2_error, .. } if claimed.holds(rank) => {
+            // a minor shows that a rank is no less
+            let log2_error = if claimed.stays(rank..=usize::MAX) { f64::NEG_INFINITY } else { log2_error };
             let engine = if log2_error == f64::NEG_INFINITY { MINOR } else { RANDOM_PRIMES };
             Verdict::Proved { engine: format!("{engine}{}", rows.scope), log2_error }
         }

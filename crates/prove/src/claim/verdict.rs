@@ -2,7 +2,7 @@
 
 use dashu::rational::RBig;
 use palmistry_checker::{Refutation, VerdictRecord};
-use palmistry_lang::{Basis, Expectation, FieldRole, Flaw};
+use palmistry_lang::{Basis, Expectation, FieldRole, Flaw, Looks};
 use palmistry_rank::observability::StateInWords;
 
 /// A state in exact numbers at which a statement fails.
@@ -127,6 +127,12 @@ pub struct Outcome {
     pub basis: Basis,
     /// The fault from which this one follows.
     pub follows: Option<String>,
+    /// Where in the text a fault stands: its section and page.
+    pub passage: Option<String>,
+    /// Of a fault, whether a conclusion of the text changes.
+    pub conclusion: Option<String>,
+    /// How the names of the statements look, where the file says it.
+    pub looks: Looks,
     /// The abbreviations that these statements use, those of imported files too: name and meaning, as it is written.
     pub definitions: Vec<(String, String)>,
     /// The fields along which these statements differentiate: name and components, as they are written.

@@ -6,6 +6,7 @@
 //! that of the words with the function's differential. A field along which no output ever changes, and the function does, is the better
 //! proof that it is not seen, and is given where it is found.
 
+use super::claimed_ranks::ClaimedRanks;
 use super::evidence::Kept;
 use super::existence::{Existence, existence};
 use super::identity::OnOneBranch;
@@ -144,7 +145,7 @@ fn by_rows(
     let branch = &on.branch;
     let words = Codistribution::within(system, &branch.values, Length::UntilItStops, frame.clone())?;
     let rank = words.generic_rank().max(frame.generic.at_least);
-    let mut log2_error = match decide_codistribution(system, on, branch, rank, rng)? {
+    let mut log2_error = match decide_codistribution(system, on, branch, ClaimedRanks::exactly(rank), rng)? {
         OnOneBranch::Verdict(Verdict::Proved { log2_error, .. }, _) => log2_error.exp2(),
         OnOneBranch::Verdict(Verdict::Undecided { why }, _) => return Err(why),
         _ => return Err(open_series(frame)),
@@ -160,7 +161,7 @@ fn by_rows(
     let mut why = open_series(frame);
     for with_it in [rank, rank + 1] {
         let rows = Rows { entries: &entries, columns, scope: "", on: &needed };
-        match decide_rows(system, &rows, limits, with_it, rng) {
+        match decide_rows(system, &rows, limits, ClaimedRanks::exactly(with_it), rng) {
             Verdict::Proved { log2_error: error, .. } => {
                 log2_error += error.exp2();
                 let log2_error = log2_error.log2();

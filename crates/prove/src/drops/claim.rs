@@ -27,6 +27,8 @@ pub(crate) struct ClaimedEverywhere {
     /// A matrix of the file by rows, and its columns; nothing for the observability codistribution.
     pub matrix: Option<(Vec<NodeId>, usize)>,
     pub rank: usize,
+    /// Whether the claim is that it is no less.
+    pub may_be_greater: bool,
     /// What has to hold for all terms to exist.
     pub guards: Vec<Guard>,
     /// What vanishes at all states that are spoken of.
@@ -35,6 +37,13 @@ pub(crate) struct ClaimedEverywhere {
     pub except: Vec<NamedSet>,
     /// Whether states of all cases are asked for.
     pub with_examples: bool,
+}
+
+impl ClaimedEverywhere {
+    /// The rank that is claimed, in words.
+    pub fn in_words(&self) -> String {
+        format!("{}{}", if self.may_be_greater { "at least " } else { "" }, self.rank)
+    }
 }
 
 /// A minor as a product, both in symbols of their own.
@@ -114,7 +123,7 @@ fn decided(
     if claim.rank > greatest {
         return Err(format!("no rank there exceeds {greatest}"));
     }
-    if claim.rank < greatest {
+    if claim.rank < greatest && !claim.may_be_greater {
         // no state has a higher rank than almost all have
         (greatest, log2_error) = at_almost_all(system, claim, seed)?;
     }
@@ -131,7 +140,7 @@ fn decided(
         nonzero: claim.except.iter().filter_map(NamedSet::single).collect(),
         mentioned,
     };
-    if greatest > claim.rank {
+    if greatest > claim.rank && !claim.may_be_greater {
         let all_rows = rows(system);
         return prepared(system, all_rows, &asked, seed, interrupt, |algebra, search| {
             Ok(greater(algebra, search, claim, greatest))

@@ -3,6 +3,7 @@
 
 use crate::claims::outcomes::{error_bound, explanations, special_text, with_decimal};
 use crate::claims::words::{meaning, numbered, words_markdown};
+use crate::formula::statement_latex_in;
 use palmistry_io::foreign::{code_block, code_span, markdown};
 use palmistry_lang::{Basis, Flaw};
 use palmistry_prove::claim::{Outcome, Verdict, Witness};
@@ -68,14 +69,17 @@ fn entry(outcome: &Outcome, fault: Flaw, out: &mut String) {
     let [_, before, between] = fault.keywords();
     let (before, between) = (capitalised(before), capitalised(between));
     let _ = writeln!(out, "## {}\n", markdown(&outcome.id));
+    if let Some(passage) = &outcome.passage {
+        let _ = writeln!(out, "{}.\n", markdown(&capitalised(passage)));
+    }
     if let Some(quoted) = &outcome.quoted {
         let _ = writeln!(out, "{before}:\n\n{}", code_block(quoted));
     }
     if let Some((printed, _)) = &outcome.printed {
         let label = if outcome.quoted.is_some() { "As a statement" } else { before.as_str() };
-        let _ = writeln!(out, "{label}:\n\n{}", code_block(printed));
+        let _ = writeln!(out, "{label}:\n\n{}", formula(printed, outcome));
     }
-    let _ = writeln!(out, "{between}:\n\n{}", code_block(&outcome.statement));
+    let _ = writeln!(out, "{between}:\n\n{}", formula(&outcome.statement, outcome));
     definitions(outcome, out);
     if let Some((_, Verdict::Refuted { witness, .. })) = &outcome.printed {
         let _ = writeln!(out, "{}\n", in_words(witness));
@@ -107,7 +111,21 @@ fn entry(outcome: &Outcome, fault: Flaw, out: &mut String) {
     if let Some(remark) = &outcome.remark {
         let _ = writeln!(out, "{}\n", markdown(remark));
     }
+    if let Some(conclusion) = &outcome.conclusion {
+        let _ = writeln!(out, "Conclusion: {}\n", markdown(conclusion));
+    }
 }
+
+/// A statement as code hosts typeset it, and as it stands in its file, where it is one.
+fn formula(text: &str, outcome: &Outcome) -> String {
+    let latex = statement_latex_in(text, &outcome.looks).filter(|latex| latex.len() <= LONGEST_FORMULA);
+    // there they know no command that makes an operator of a word
+    let shown = latex.map(|latex| latex.replace("\\operatorname{", "\\mathrm{"));
+    shown.map_or(String::new(), |latex| format!("```math\n{latex}\n```\n\n")) + &code_block(text)
+}
+
+/// What is longer is shown as it is written alone.
+const LONGEST_FORMULA: usize = 2000;
 
 /// What the abbreviations of a statement mean.
 fn definitions(outcome: &Outcome, out: &mut String) {

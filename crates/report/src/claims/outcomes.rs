@@ -78,6 +78,12 @@ pub fn claim_json(outcome: &Outcome) -> Value {
     if let Some(from) = &outcome.follows {
         object["follows"] = json!(from);
     }
+    if let Some(passage) = &outcome.passage {
+        object["passage"] = json!(passage);
+    }
+    if let Some(conclusion) = &outcome.conclusion {
+        object["conclusion"] = json!(conclusion);
+    }
     if let Some((statement, verdict)) = &outcome.printed {
         let mut printed = verdict_json(verdict);
         printed["statement"] = json!(statement);

@@ -4,7 +4,7 @@ use crate::claims::outcomes::{
     claim_line, error_bound, not_looked_at_text, special_text, state_line, with_decimal,
 };
 use crate::claims::words::counts_text;
-use crate::formula::statement_latex;
+use crate::formula::statement_latex_in;
 use crate::layout::{Layout, Tone, counted};
 use palmistry_io::foreign;
 use palmistry_lang::Flaw;
@@ -60,7 +60,9 @@ pub fn claims_text(
         for told in &outcome.beside {
             lines.push(layout.wrap(&format!("{:LABEL$}", ""), TEXT, told));
         }
-        if let Some(formula) = form.latex.then(|| statement_latex(&outcome.statement)).flatten() {
+        if let Some(formula) =
+            form.latex.then(|| statement_latex_in(&outcome.statement, &outcome.looks)).flatten()
+        {
             // on one line, however long: it is to be copied
             lines.push(format!("{:LABEL$}{:<10} {formula}", "", "latex"));
         }

@@ -21,6 +21,21 @@ pub(super) fn tally(outcomes: &[&Outcome]) -> Markup {
     }
 }
 
+/// The claims of one file as cells: name, sign and colour of the verdict, and a way to the entry.
+pub(super) fn claims_of(file: usize, claims: &[Placed<'_>], anchors: &Anchors) -> Markup {
+    let own: Vec<&Placed<'_>> = claims.iter().filter(|claim| claim.file == file).collect();
+    html! {
+        @if !own.is_empty() {
+            h3 { "What is claimed" }
+            div.cells.wide {
+                @for claim in own {
+                    a data-w=(claim.outcome.word()) class=[(!claim.outcome.ok).then_some("bad")] href=(format!("#{}", anchors.claim(claim.file, &claim.outcome.id))) { (claim.outcome.id) }
+                }
+            }
+        }
+    }
+}
+
 /// One cell for each numbered equation: its number, the sign and colour of its verdict, and a way to its first entry.
 pub(super) fn equations(numbering: &Numbering, claims: &[Placed<'_>], anchors: &Anchors) -> Markup {
     let all = numbering.equations(claims.iter().map(|claim| claim.outcome));

@@ -193,7 +193,7 @@ fn listed(conditions: &[String], longest: usize) -> Markup {
     html! {
         @for (place, condition) in conditions.iter().enumerate() {
             @if place > 0 { ", " }
-            @let formula = if condition.len() <= longest { conditions_mathml(std::slice::from_ref(condition)) } else { None };
+            @let formula = if condition.len() <= longest { conditions_mathml(std::slice::from_ref(condition), &Default::default()) } else { None };
             @match formula {
                 Some(formula) => { span.f { (PreEscaped(formula)) } }
                 None => { code { (in_short(condition, longest)) } }

@@ -2,10 +2,10 @@
 
 use super::anchors::{Anchors, Placed};
 use crate::claims::outcomes::{error_bound, not_looked_at_text, special_text, witness_line};
-use crate::formula::formula_mathml;
+use crate::formula::formula_mathml_in;
 use crate::names::fields_text;
 use maud::{Markup, PreEscaped, html};
-use palmistry_lang::{Basis, Flaw};
+use palmistry_lang::{Basis, Flaw, Looks};
 use palmistry_prove::claim::{Outcome, Verdict};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -20,6 +20,7 @@ pub(super) fn entry(claim: Placed<'_>, anchors: &Anchors, engines: &Engines<'_>)
         article #(anchor) data-w=[word] class=[(!outcome.ok).then_some("bad")] {
             h4 {
                 (outcome.id) " " b { (outcome.word()) } " "
+                @if let Some(passage) = &outcome.passage { (passage) " " }
                 @if !outcome.ok { em { "expected: " (outcome.expected_word()) } " " }
                 @if let Some(line) = anchors.line(file, &outcome.id) {
                     a href=(format!("#{}", Anchors::line_name(file, line))) { (line) }
@@ -31,9 +32,9 @@ pub(super) fn entry(claim: Placed<'_>, anchors: &Anchors, engines: &Engines<'_>)
             @match outcome.fault {
                 Some(fault) => (faulty(outcome, fault, engines)),
                 None => {
-                    @if !matches!(outcome.verdict, Verdict::Definition { .. }) || formula_mathml(&outcome.statement).is_some() {
+                    @if !matches!(outcome.verdict, Verdict::Definition { .. }) || formula_mathml_in(&outcome.statement, &outcome.looks).is_some() {
                         // the entry itself scrolls: it needs no element of its own
-                        (bare_formula(&outcome.statement))
+                        (bare_formula(&outcome.statement, &outcome.looks))
                     }
                     p { (engines.explain(&outcome.verdict)) (restated(outcome)) }
                 }
@@ -44,6 +45,7 @@ pub(super) fn entry(claim: Placed<'_>, anchors: &Anchors, engines: &Engines<'_>)
             @if !outcome.fields.is_empty() { p { "fields: " (fields_text(&outcome.fields)) } }
             @if let Some(from) = &outcome.follows { p { "follows " (from) } }
             @if let Some(remark) = &outcome.remark { p.r { (remark) } }
+            @if let Some(conclusion) = &outcome.conclusion { p.r { b { "Conclusion: " } (conclusion) } }
         }
     }
 }
@@ -54,27 +56,27 @@ fn faulty(outcome: &Outcome, fault: Flaw, engines: &Engines<'_>) -> Markup {
     html! {
         @if let Some(quoted) = &outcome.quoted { p.q { span.l { (before) } q { (quoted) } } }
         @if let Some((statement, verdict)) = &outcome.printed {
-            div.q { span.l { @if outcome.quoted.is_some() { "as" } @else { (before) } } (formula(statement)) }
+            div.q { span.l { @if outcome.quoted.is_some() { "as" } @else { (before) } } (formula(statement, &outcome.looks)) }
             p { b { (verdict.word()) } " " (engines.explain(verdict)) }
             @if let Some(special) = &outcome.printed_at_files_values { p { (special_text(special)) } }
         }
-        div.c { span.l { (between) } (formula(&outcome.statement)) }
+        div.c { span.l { (between) } (formula(&outcome.statement, &outcome.looks)) }
         p { b { (outcome.verdict.word()) } " " (engines.explain(&outcome.verdict)) }
     }
 }
 
 /// A statement as mathematics; as it is written where it is none.
-pub(super) fn formula(text: &str) -> Markup {
+pub(super) fn formula(text: &str, looks: &Looks) -> Markup {
     html! {
-        @match formula_mathml(text) {
+        @match formula_mathml_in(text, looks) {
             Some(formula) => { div { (PreEscaped(formula)) } }
             None => { div { code { (text) } } }
         }
     }
 }
 
-fn bare_formula(text: &str) -> Markup {
-    match formula_mathml(text) {
+fn bare_formula(text: &str, looks: &Looks) -> Markup {
+    match formula_mathml_in(text, looks) {
         Some(formula) => html! { (PreEscaped(formula)) },
         None => html! { code { (text) } },
     }

@@ -32,11 +32,14 @@ pub(super) fn extremes(found: &Findings, heading: &str) -> Markup {
     html! {
         section #extremes {
             h2 { (heading) }
-            @for file in &found.files {
-                @if let Some(trade) = &file.trade { (traded(trade)) }
+            details {
+                summary { "number types, the extremes, and what is certified between samples" }
+                @for file in &found.files {
+                    @if let Some(trade) = &file.trade { (traded(trade)) }
+                }
+                @if !stress.is_empty() { (stressed(&stress)) }
+                @if !regions.is_empty() { (certified(&regions)) }
             }
-            @if !stress.is_empty() { (stressed(&stress)) }
-            @if !regions.is_empty() { (certified(&regions)) }
         }
     }
 }

@@ -1,13 +1,14 @@
 //! What is not seen as vector fields, and what is seen as functions, as mathematics.
 
-use crate::formula::{field_mathml, formula_mathml};
+use crate::formula::{field_mathml, formula_mathml_in};
 use crate::ranks::motions::{signed_parts, unseen_field_text};
 use maud::{Markup, PreEscaped, html};
+use palmistry_lang::Looks;
 use palmistry_rank::observability::{UnseenField, UnseenMotions};
 use palmistry_workbench::paper::SetRank;
 
 /// Of each set on which something is unseen, the fields and the functions.
-pub(super) fn unseen_motions(ranks: &[SetRank]) -> Markup {
+pub(super) fn unseen_motions(ranks: &[SetRank], looks: &Looks) -> Markup {
     let found = ranks.iter().filter_map(|rank| Some((rank, rank.answer().ok()?)));
     let found: Vec<(&SetRank, &UnseenMotions)> = found
         .flat_map(|(rank, answer)| {
@@ -15,11 +16,11 @@ pub(super) fn unseen_motions(ranks: &[SetRank]) -> Markup {
         })
         .collect();
     html! {
-        @for (rank, found) in found { (of_a_set(rank.name(), found)) }
+        @for (rank, found) in found { (of_a_set(rank.name(), found, looks)) }
     }
 }
 
-fn of_a_set(name: &str, found: &UnseenMotions) -> Markup {
+fn of_a_set(name: &str, found: &UnseenMotions, looks: &Looks) -> Markup {
     let scope =
         if found.for_all_parameters { ", for all parameter values" } else { " at the values in the file" };
     html! {
@@ -27,7 +28,7 @@ fn of_a_set(name: &str, found: &UnseenMotions) -> Markup {
             "Unobservable directions (generically; " (name) (scope) "): "
             @for (place, field) in found.fields.iter().enumerate() {
                 @if place > 0 { "; " }
-                span.f { (field_formula(field)) }
+                span.f { (field_formula(field, looks)) }
             }
             @if found.fields_missing > 0 {
                 @if !found.fields.is_empty() { "; " }
@@ -41,7 +42,7 @@ fn of_a_set(name: &str, found: &UnseenMotions) -> Markup {
                 " Observable: "
                 @for (place, name) in found.seen_names.iter().enumerate() {
                     @if place > 0 { ", " }
-                    span.f { (expression(name)) }
+                    span.f { (expression(name, looks)) }
                 }
                 "."
             }
@@ -49,7 +50,7 @@ fn of_a_set(name: &str, found: &UnseenMotions) -> Markup {
                 " Identifiable combinations: "
                 @for (place, function) in found.functions.iter().enumerate() {
                     @if place > 0 { ", " }
-                    span.f { (expression(&function.text)) }
+                    span.f { (expression(&function.text, looks)) }
                 }
                 "."
             }
@@ -60,12 +61,13 @@ fn of_a_set(name: &str, found: &UnseenMotions) -> Markup {
     }
 }
 
-fn field_formula(field: &UnseenField) -> PreEscaped<String> {
-    field_mathml(&signed_parts(field)).map_or_else(|| in_letters(&unseen_field_text(field)), PreEscaped)
+fn field_formula(field: &UnseenField, looks: &Looks) -> PreEscaped<String> {
+    field_mathml(&signed_parts(field), looks)
+        .map_or_else(|| in_letters(&unseen_field_text(field)), PreEscaped)
 }
 
-fn expression(text: &str) -> PreEscaped<String> {
-    formula_mathml(text).map_or_else(|| in_letters(text), PreEscaped)
+fn expression(text: &str, looks: &Looks) -> PreEscaped<String> {
+    formula_mathml_in(text, looks).map_or_else(|| in_letters(text), PreEscaped)
 }
 
 fn in_letters(text: &str) -> PreEscaped<String> {

@@ -3,12 +3,16 @@
 use super::entry::{explain, formula};
 use super::findings::ranks_in_words;
 use super::motions::unseen_motions;
+use super::system::system_mathematics;
 use super::unknowns::unknowns;
-use crate::formula::{conditions_mathml, formula_mathml};
+use crate::formula::{conditions_mathml, formula_mathml_in};
 use crate::plot;
 use crate::ranks::{deviation_text, taken_for_granted};
+use crate::structure::{NodeVerdict, structure_picture};
 use maud::{Markup, PreEscaped, html};
+use palmistry_lang::Looks;
 use palmistry_prove::claim::Outcome;
+use palmistry_rank::observability::Seen;
 use palmistry_rank::sweep::RankAnswer;
 use palmistry_workbench::paper::{
     DerivativesFound, FileFindings, LineFound, MapFound, ReductionFound, SetRank,
@@ -28,19 +32,56 @@ pub(super) fn has_a_section(file: &FileFindings) -> bool {
 }
 
 /// Everything of one file.
-pub(super) fn file_section(anchor: &str, file: &FileFindings, units: Units<'_>) -> Markup {
+pub(super) fn file_section(anchor: &str, file: &FileFindings, claims: &Markup, units: Units<'_>) -> Markup {
+    let looks = &file.system.looks;
     html! {
         section #(anchor) {
             h2 { (file.system.title) }
-            @for found in &file.reductions { (reduction(found)) }
+            @if !file.ranks.is_empty() { div.beside { div { (system_mathematics(&file.system)) } (structure(file)) } }
+            @for found in &file.reductions { (reduction(found, looks)) }
             @for left in &file.left_out { p.bad { "Not done: " (left.what) ": " (left.why) } }
-            @for line in granted(file) { p { (line) "." } }
-            @if !file.ranks.is_empty() { (unknowns(&file.ranks)) (ranks(&file.ranks)) (unseen_motions(&file.ranks)) }
+            (claims)
+            @if !file.ranks.is_empty() {
+                h3 { "What is observable" }
+                @for line in granted(file) { p { (line) "." } }
+                (unknowns(&file.ranks, looks)) (unseen_motions(&file.ranks, looks)) (ranks(&file.ranks, looks))
+            }
             @for map in &file.maps { (maps(map, units)) }
             @if !file.lines.is_empty() { (lines(&file.lines, units)) }
             @for found in &file.printed { (printed(found, &file.outcomes)) }
-            @if let Some(found) = &file.ways { (ways(found)) }
-            @if let Some(found) = &file.derivatives { (derivatives(found)) }
+            @if file.ways.is_some() || file.derivatives.is_some() {
+                details {
+                    summary { "Lie derivatives by several routes" }
+                    @if let Some(found) = &file.ways { (ways(found)) }
+                    @if let Some(found) = &file.derivatives { (derivatives(found)) }
+                }
+            }
+        }
+    }
+}
+
+/// Which state stands in whose rate, with what is observable.
+fn structure(file: &FileFindings) -> Markup {
+    let branch = file.ranks.first().and_then(|rank| rank.answer().ok()?.branches.first());
+    let verdict = |name: &str| {
+        let unknowns =
+            branch.into_iter().flat_map(|branch| branch.unknowns.iter().zip(&branch.generic.unknowns));
+        let found = unknowns.filter(|((own, _), _)| own == name).map(|(_, (_, seen))| *seen).next();
+        match found {
+            Some(Seen::Yes) => NodeVerdict::Observable,
+            Some(Seen::No) => NodeVerdict::Unobservable,
+            _ => NodeVerdict::Open,
+        }
+    };
+    html! {
+        @if let Some(picture) = structure_picture(&file.system, &verdict) {
+            figure {
+                (PreEscaped(picture))
+                figcaption {
+                    "An arrow leads from a state to those that stand in its rate; a ring is around what the outputs hold, squares are "
+                    "signals. Green is generically observable, red is not, grey is known or undecided."
+                }
+            }
         }
     }
 }
@@ -108,30 +149,30 @@ fn lines(lines: &[LineFound], units: Units<'_>) -> Markup {
 }
 
 /// A name or an expression as mathematics; as it is written where it is none.
-fn in_line(text: &str) -> Markup {
-    formula_mathml(text).map_or_else(|| html! { (text) }, PreEscaped)
+pub(super) fn in_line(text: &str, looks: &Looks) -> Markup {
+    formula_mathml_in(text, looks).map_or_else(|| html! { (text) }, PreEscaped)
 }
 
 /// Conditions as mathematics; as they are written where they are none.
-fn conditions(written: &[String]) -> Markup {
+fn conditions(written: &[String], looks: &Looks) -> Markup {
     html! {
-        @match conditions_mathml(written) {
+        @match conditions_mathml(written, looks) {
             Some(formula) => { span.f { (PreEscaped(formula)) } }
             None => { code { (written.join(", ")) } }
         }
     }
 }
 
-fn reduction(found: &ReductionFound) -> Markup {
+fn reduction(found: &ReductionFound, looks: &Looks) -> Markup {
     let proved = found.claims.iter().filter(|outcome| outcome.ok).count();
     html! {
         p {
-            "This is " em { (found.of) } " where " (conditions(&found.reduction.written)) ": "
+            "This is " em { (found.of) } " where " (conditions(&found.reduction.written, looks)) ": "
             b { (proved) } " of " (found.claims.len()) " statements proved (the conditions stay met, what is left out stays as it "
             "is, fields and differentials are the same). Left out: "
             @for (place, name) in found.left_out.iter().enumerate() {
                 @if place > 0 { ", " }
-                (in_line(name))
+                (in_line(name, looks))
             }
             "."
             @if let Some(remark) = &found.reduction.remark { " " (remark) "." }
@@ -165,6 +206,16 @@ fn unseen(answer: &RankAnswer, own: bool) -> Vec<String> {
     found
 }
 
+/// Lists of names as symbols, one list behind the other.
+fn in_symbols(lists: &[String], looks: &Looks) -> Markup {
+    html! {
+        @for (place, list) in lists.iter().enumerate() {
+            @if place > 0 { "; " }
+            @for (place, name) in list.split(", ").enumerate() { @if place > 0 { ", " } (in_line(name, looks)) }
+        }
+    }
+}
+
 /// The words that were needed, branches with the same words together.
 fn distinct_words(answer: &RankAnswer) -> Vec<String> {
     let mut found: Vec<String> = answer.branches.iter().map(|branch| branch.words.join(", ")).collect();
@@ -173,7 +224,7 @@ fn distinct_words(answer: &RankAnswer) -> Vec<String> {
 }
 
 /// The rank on each set, a row each.
-fn ranks(ranks: &[SetRank]) -> Markup {
+fn ranks(ranks: &[SetRank], looks: &Looks) -> Markup {
     html! {
         div.scroll { table {
             thead { tr {
@@ -183,13 +234,13 @@ fn ranks(ranks: &[SetRank]) -> Markup {
             tbody {
                 @for rank in ranks {
                     tr {
-                        td { (rank.name()) @if let Some(set) = &rank.set { br; (conditions(&set.written)) } }
+                        td { (rank.name()) @if let Some(set) = &rank.set { br; (conditions(&set.written, looks)) } }
                         @match rank.answer() {
                             Ok(answer) => {
-                                td { b { (ranks_in_words(answer, false)) } " of " (answer.dimension) }
-                                td { (unseen(answer, false).join("; ")) }
+                                td.k { b { (ranks_in_words(answer, false)) } " of " (answer.dimension) }
+                                td { (in_symbols(&unseen(answer, false), looks)) }
                                 td { b { (ranks_in_words(answer, true)) } }
-                                td { (unseen(answer, true).join("; ")) }
+                                td { (in_symbols(&unseen(answer, true), looks)) }
                                 td.w { @for words in distinct_words(answer) { div { (words) } } }
                                 td.n { (answer.branches.iter().map(|b| b.full.samples).sum::<u64>()) }
                                 td.n { (answer.branches.iter().map(|b| b.full.certified).sum::<u64>()) }
@@ -214,12 +265,14 @@ fn least_observable(answer: &RankAnswer) -> String {
 }
 
 fn printed(found: &PrintedExpression, outcomes: &[Outcome]) -> Markup {
+    let none = Looks::default();
+    let looks = outcomes.first().map_or(&none, |outcome| &outcome.looks);
     let digits = found.values.first().map_or(0, |value| value.carried);
     let studied: Vec<_> = found.values.iter().filter_map(|v| Some((v, v.study.as_ref().ok()?))).collect();
     let poles: Vec<&Outcome> =
         outcomes.iter().filter(|outcome| outcome.pole_of.as_deref() == Some(found.text.as_str())).collect();
     html! {
-        h3 { "Numbers in print: " (in_line(&found.text)) }
+        h3 { "Numbers in print: " (in_line(&found.text, looks)) }
         @if let Some(expanded) = &found.expanded {
             p {
                 "Multiplied out over its common denominator, as a computer-algebra system's " code { "simplify" }
@@ -281,7 +334,7 @@ fn printed(found: &PrintedExpression, outcomes: &[Outcome]) -> Markup {
                 tbody {
                     @for outcome in poles {
                         tr {
-                            td.w { (formula(&outcome.statement)) }
+                            td.w { (formula(&outcome.statement, looks)) }
                             td.w { (outcome.word()) ": " (explain(&outcome.verdict)) }
                         }
                     }

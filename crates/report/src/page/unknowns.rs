@@ -1,20 +1,22 @@
 //! What is seen at almost all states, on the page: a sentence, and a table of the unknowns.
 
+use super::regime::in_line;
 use crate::ranks::generic::{generic_sentence, unknown_verdict};
 use maud::{Markup, html};
+use palmistry_lang::Looks;
 use palmistry_rank::observability::Seen;
 use palmistry_rank::sweep::BranchAnswer;
 use palmistry_workbench::paper::SetRank;
 
 /// Of the first rank of a file, which is that at all states.
-pub(super) fn unknowns(ranks: &[SetRank]) -> Markup {
+pub(super) fn unknowns(ranks: &[SetRank], looks: &Looks) -> Markup {
     let answer = ranks.iter().find_map(|rank| rank.answer().ok());
     html! {
-        @for branch in answer.iter().flat_map(|answer| &answer.branches) { (of_branch(branch)) }
+        @for branch in answer.iter().flat_map(|answer| &answer.branches) { (of_branch(branch, looks)) }
     }
 }
 
-fn of_branch(branch: &BranchAnswer) -> Markup {
+fn of_branch(branch: &BranchAnswer, looks: &Looks) -> Markup {
     let sentence = generic_sentence(&branch.generic);
     let mut letters = sentence.chars();
     let first = letters.next().map(|letter| letter.to_uppercase().to_string()).unwrap_or_default();
@@ -31,7 +33,7 @@ fn of_branch(branch: &BranchAnswer) -> Markup {
                 tbody {
                     @for ((name, kind), (_, seen)) in branch.unknowns.iter().zip(&branch.generic.unknowns) {
                         tr {
-                            td { (name) }
+                            td { (in_line(name, looks)) }
                             td { (kind.name()) }
                             td.bad[*seen == Seen::No] { (unknown_verdict(*kind, *seen)) }
                         }

@@ -1,7 +1,7 @@
 //! The page of a paper, put together from its parts: one file, with its pictures and nothing from elsewhere.
 
 use super::anchors::{Anchors, TheoremAddresses, placed, stem};
-use super::claims::{all_claims, equations, faults, tally};
+use super::claims::{all_claims, claims_of, equations, faults, tally};
 use super::entry::{ENGINES, name};
 use super::extremes::{extremes, extremes_heading};
 use super::regime::{file_section, has_a_section};
@@ -82,7 +82,10 @@ pub fn page_with(found: &Findings, theorems: &TheoremAddresses) -> String {
         main {
             @if numbering.count() > 0 { (equations(numbering, &claims, &anchors)) }
             (faults(numbering, &claims, &anchors))
-            @for (file, name) in sections() { (file_section(name, file, &|name| unit_of(&file.system, name))) }
+            @for (file, name) in sections() {
+                @let place = found.files.iter().position(|one| std::ptr::eq(one, file)).unwrap_or(0);
+                (file_section(name, file, &claims_of(place, &claims, &anchors), &|name| unit_of(&file.system, name)))
+            }
             @if let Some(heading) = extremes_heading(found) { (extremes(found, heading)) }
             @if !experiments.is_empty() { (observed_section(&experiments)) }
             @if !slow.is_empty() { (slow_section(&slow)) }
@@ -92,7 +95,10 @@ pub fn page_with(found: &Findings, theorems: &TheoremAddresses) -> String {
             (sources(&systems, &anchors))
         }
     };
-    let title = format!("{}: what holds, and what does not", found.paper.title);
+    let title = match found.paper.title.as_str() {
+        "" => "What holds, and what does not".to_owned(),
+        title => format!("{title}: what holds, and what does not"),
+    };
     document(&title, &content, true)
 }
 
@@ -100,18 +106,30 @@ fn header(found: &Findings, links: Markup) -> Markup {
     let outcomes: Vec<&Outcome> = found.outcomes().collect();
     html! {
         header {
-            h1 { "What holds, and what does not" }
-            p {
-                (found.paper.authors_in_words()) em { (found.paper.title) }
-                @if let Some(year) = found.paper.year { " (" (year) ")" }
-                @if let Some(source) = &found.paper.source { ", " (source) }
-                ", checked from first principles. "
-                "Each verdict says what stands behind it: " b { "proved" } " is exact arithmetic with the "
-                "probability of an error stated, " b { "refuted" } " a state in exact numbers at which the two "
-                "sides differ, " b { "erratum" } " a printed form refuted and its corrected form proved. "
-                b { "Restated" } " is no proof: the two sides are one expression once names are put in."
+            h1 { @if found.paper.title.is_empty() { "What holds, and what does not" } @else { (found.paper.title) } }
+            @let authors = found.paper.authors.join(", ");
+            @if !authors.is_empty() || found.paper.year.is_some() || found.paper.source.is_some() {
+                p.lead {
+                    (authors)
+                    @if let Some(year) = found.paper.year { " (" (year) ")" }
+                    @if let Some(source) = &found.paper.source { @if !authors.is_empty() || found.paper.year.is_some() { ". " } (source) }
+                    "."
+                }
             }
+            p { "Checked by palmistry from first principles: what holds, and what does not." }
             (tally(&outcomes))
+            @if !outcomes.iter().any(|outcome| outcome.fault.is_some()) {
+                p { "No errata: no form in print that was checked was found wrong." }
+            }
+            details {
+                summary { "what stands behind each verdict" }
+                p {
+                    b { "Proved" } " is exact arithmetic with the probability of an error stated, " b { "refuted" }
+                    " a state in exact numbers at which the two sides differ, " b { "erratum" }
+                    " a printed form refuted and its corrected form proved. " b { "Restated" }
+                    " is no proof: the two sides are one expression once names are put in."
+                }
+            }
             p.y {
                 "Seed " (found.seed)
                 @if !found.seconds.is_nan() { ", " (format!("{:.0} s", found.seconds)) " in all" }

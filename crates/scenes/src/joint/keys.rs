@@ -3,7 +3,7 @@
 use super::super::scene::place::Places;
 use palmistry_fit::{ErrorLaw, ErrorScale, ParameterScale, Prior, PriorLaw};
 use palmistry_io::foreign::{name_of, shown_path};
-use palmistry_lang::{Problem, ReadError, load};
+use palmistry_lang::{Code, Problem, ReadError, load};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -229,13 +229,13 @@ impl JointScene {
     /// A mistake at a place of the scene, named by its keys.
     pub fn error_at(&self, place: &str, message: impl Into<String>, help: impl Into<String>) -> ReadError {
         let span = Places::of(&self.text).map_or(0..0, |places| places.value(place));
-        Problem::new(&span, message, "this").help(help).locate(&self.name, &self.text)
+        Problem::new(Code::SceneValue, &span, message, "this").help(help).locate(&self.name, &self.text)
     }
 }
 
 fn checked(keys: Keys, places: &Places<'_>, name: &str, text: &str) -> Result<JointScene, Problem> {
     let wrong = |place: &str, message: String, help: &str| {
-        Err(Problem::new(&places.value(place), message, "this").help(help))
+        Err(Problem::new(Code::SceneValue, &places.value(place), message, "this").help(help))
     };
     if keys.title.trim().is_empty() {
         return wrong("title", "the title is empty".to_owned(), "say what the experiments are, in a line");

@@ -1,7 +1,7 @@
 //! Measurements in rows: experiment, output, time, value, and what is set for the row alone.
 
 use palmistry_io::foreign::{name_of, shown};
-use palmistry_lang::{Problem, ReadError, load};
+use palmistry_lang::{Code, Problem, ReadError, load};
 use std::ops::Range;
 use std::path::Path;
 
@@ -35,13 +35,14 @@ impl MeasuredRows {
     /// What is wrong with it, and where.
     pub fn read(path: &Path) -> Result<MeasuredRows, ReadError> {
         let name = name_of(path);
-        let text = load(path).map_err(|message| Problem::new(&(0..0), message, "").locate(&name, ""))?;
+        let text = load(path)
+            .map_err(|message| Problem::new(Code::SceneValue, &(0..0), message, "").locate(&name, ""))?;
         MeasuredRows::parse(&name, text)
     }
 
     fn parse(name: &str, text: String) -> Result<MeasuredRows, ReadError> {
         let at = |place: Range<usize>, message: String, help: &str| {
-            Problem::new(&place, message, "here").help(help).locate(name, &text)
+            Problem::new(Code::SceneValue, &place, message, "here").help(help).locate(name, &text)
         };
         let mut reader =
             csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
@@ -121,7 +122,9 @@ impl MeasuredRows {
 
     /// A mistake in a row.
     pub fn error(&self, row: &MeasuredRow, message: impl Into<String>, help: impl Into<String>) -> ReadError {
-        Problem::new(&row.place, message, "in this row").help(help).locate(&self.name, &self.text)
+        Problem::new(Code::SceneValue, &row.place, message, "in this row")
+            .help(help)
+            .locate(&self.name, &self.text)
     }
 }
 

@@ -9,7 +9,7 @@ mod robot;
 use super::keys::{SceneKeys, SensorKeys};
 use super::place::Places;
 use super::{Scene, Simulated};
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -39,12 +39,12 @@ pub(super) struct Checks<'a> {
 impl Checks<'_> {
     /// An error at a value.
     fn wrong(&self, place: &str, message: impl Into<String>, help: impl Into<String>) -> Problem {
-        Problem::new(&self.places.value(place), message, "this").help(help)
+        Problem::new(Code::SceneValue, &self.places.value(place), message, "this").help(help)
     }
 
     /// An error at a key: it should not be there, or something is missing beside it.
     fn wrong_key(&self, place: &str, message: impl Into<String>, help: impl Into<String>) -> Problem {
-        Problem::new(&self.places.key(place), message, "this").help(help)
+        Problem::new(Code::SceneValue, &self.places.key(place), message, "this").help(help)
     }
 
     fn finite(&self, place: &str, value: f64) -> Result<(), Problem> {

@@ -1,7 +1,7 @@
 //! `[columns]`: which column of a recording is which, and in what unit.
 
 use super::place::Places;
-use palmistry_lang::{Base, Dimension, Problem, ScaledUnit, System, nearest};
+use palmistry_lang::{Base, Code, Dimension, Problem, ScaledUnit, System, nearest};
 use palmistry_observe::{ColumnNames, ColumnSource, TIME};
 use std::collections::BTreeMap;
 
@@ -43,9 +43,13 @@ pub(super) fn names(
                 None => format!("a column is called here as the model calls it: {}", known.join(", ")),
             };
             let place = span(&format!("columns.{name}"));
-            return Err(
-                Problem::new(&place, format!("the model knows no '{name}'"), "this column").help(help)
-            );
+            return Err(Problem::new(
+                Code::SceneKey,
+                &place,
+                format!("the model knows no '{name}'"),
+                "this column",
+            )
+            .help(help));
         }
         let (factor, mut offset) = column.unit.as_ref().map_or((1.0, 0.0), |unit| (unit.factor, unit.offset));
         let measures = match name.as_str() {
@@ -65,7 +69,7 @@ pub(super) fn names(
                 unit_of(&unit.dimension)
             );
             let place = span(&format!("columns.{name}.unit"));
-            return Err(Problem::new(&place, message, "this unit")
+            return Err(Problem::new(Code::SceneValue, &place, message, "this unit")
                 .help("name the unit in which the recording has it"));
         }
         offset = offset * column.factor + column.offset;

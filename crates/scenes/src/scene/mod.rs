@@ -23,7 +23,7 @@ pub use simulated::{Body, LibraryBody, Palms, SceneOutline, Simulated, Simulated
 
 use palmistry_bodies::mechanics::Palm;
 use palmistry_io::foreign::{name_of, shown_path};
-use palmistry_lang::{Problem, System, load};
+use palmistry_lang::{Code, Problem, System, load};
 use palmistry_observe::{ColumnNames, FaultRules};
 use place::Places;
 use std::collections::BTreeMap;
@@ -73,7 +73,8 @@ impl Scene {
     /// What is wrong with the file, and where. The files that it names have to be there.
     pub fn read(path: &Path) -> Result<Scene, SceneError> {
         let name = name_of(path);
-        let text = load(path).map_err(|message| Problem::new(&(0..0), message, "").locate(&name, ""))?;
+        let text = load(path)
+            .map_err(|message| Problem::new(Code::SceneValue, &(0..0), message, "").locate(&name, ""))?;
         let scene = Scene::parse(&name, &text)?;
         let named = [("model", Some(&scene.model)), ("data.record", scene.data.record.as_ref())];
         for (place, file) in named.into_iter().filter_map(|(place, file)| Some((place, file?))) {
@@ -109,7 +110,7 @@ impl Scene {
     ) -> SceneError {
         // the text was read before: it has places
         let span = Places::of(&self.text).map_or(0..0, |places| places.value(place));
-        Problem::new(&span, message, label).help(help).locate(&self.name, &self.text)
+        Problem::new(Code::SceneValue, &span, message, label).help(help).locate(&self.name, &self.text)
     }
 
     /// The text that was read.

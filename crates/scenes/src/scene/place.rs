@@ -1,6 +1,6 @@
 //! Where in the text of a scene each key and value stands, and what is wrong there in words.
 
-use palmistry_lang::{Problem, nearest};
+use palmistry_lang::{Code, Problem, nearest};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -21,7 +21,8 @@ impl<'a> Places<'a> {
     pub fn of(text: &'a str) -> Result<Self, Problem> {
         let table = DeTable::parse(text).map_err(|error| {
             let span = error.span().unwrap_or(text.len()..text.len());
-            Problem::new(&span, in_words(error.message()), "here").help("a scene is a TOML file (toml.io)")
+            Problem::new(Code::SceneText, &span, in_words(error.message()), "here")
+                .help("a scene is a TOML file (toml.io)")
         })?;
         Ok(Places { table, length: text.len() })
     }
@@ -103,11 +104,17 @@ impl<'a> Places<'a> {
                 // of a table that is read by hand the span is that of its header
                 let after = || self.key_within(unknown, &(span.start..self.length));
                 let place = self.key_within(unknown, &span).or_else(after).unwrap_or(span);
-                Problem::new(&place, format!("unknown key '{unknown}'"), "not a key of this table")
-                    .help(suggest(unknown, known))
+                Problem::new(
+                    Code::SceneKey,
+                    &place,
+                    format!("unknown key '{unknown}'"),
+                    "not a key of this table",
+                )
+                .help(suggest(unknown, known))
             }
             (Some((unknown, known)), m) if m.starts_with("unknown variant") => {
-                Problem::new(&span, format!("'{unknown}' is not known"), "here").help(suggest(unknown, known))
+                Problem::new(Code::SceneValue, &span, format!("'{unknown}' is not known"), "here")
+                    .help(suggest(unknown, known))
             }
             (Some((missing, _)), m) if m.starts_with("missing field") => {
                 let help = EXAMPLES.iter().find(|(key, _)| key == missing).map(|(_, example)| *example);
@@ -117,9 +124,10 @@ impl<'a> Places<'a> {
                     true => (self.top(), "at the top of the file, before the first table"),
                     false => (span, "in this table"),
                 };
-                Problem::new(&place, format!("the key '{missing}' is missing"), label).help(help)
+                Problem::new(Code::SceneKey, &place, format!("the key '{missing}' is missing"), label)
+                    .help(help)
             }
-            _ => Problem::new(&span, in_words(message), "this")
+            _ => Problem::new(Code::SceneValue, &span, in_words(message), "this")
                 .help("write a value of the kind that is expected"),
         }
     }

@@ -7,7 +7,7 @@ use super::scene::{SlowPalms, SlowScene, SlowStudy};
 use palmistry_bodies::mechanics::moving::Course;
 use palmistry_bodies::mechanics::resting::plan_3_14;
 use palmistry_io::foreign::name_of;
-use palmistry_lang::{Problem, ReadError, load};
+use palmistry_lang::{Code, Problem, ReadError, load};
 use palmistry_observe::{FaultRules, OnFault};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -150,7 +150,7 @@ impl SlowScene {
 
 fn checked(keys: Keys, places: &Places, name: &str, text: &str) -> Result<SlowScene, Problem> {
     let wrong = |place: &str, message: String, help: &str| {
-        Problem::new(&places.value(place), message, "this").help(help)
+        Problem::new(Code::SceneValue, &places.value(place), message, "this").help(help)
     };
     if keys.title.trim().is_empty() {
         return Err(wrong("title", "the title is empty".into(), "say what the experiment is, in a line"));

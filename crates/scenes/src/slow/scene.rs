@@ -4,7 +4,7 @@ use super::super::scene::Body;
 use super::super::scene::place::Places;
 use super::families::Family;
 use palmistry_bodies::mechanics::moving::Course;
-use palmistry_lang::{Problem, ReadError};
+use palmistry_lang::{Code, Problem, ReadError};
 use palmistry_observe::FaultRules;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -74,6 +74,6 @@ impl SlowScene {
     /// An error at a value of this scene.
     pub fn error_at(&self, place: &str, message: impl Into<String>, help: impl Into<String>) -> ReadError {
         let span = Places::of(&self.text).map_or(0..0, |places| places.value(place));
-        Problem::new(&span, message, "here").help(help).locate(&self.name, &self.text)
+        Problem::new(Code::SceneValue, &span, message, "here").help(help).locate(&self.name, &self.text)
     }
 }

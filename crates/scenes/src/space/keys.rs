@@ -10,7 +10,7 @@ use crate::solid::FEWEST;
 use palmistry_bodies::mechanics::moving::{Course, PushedPalm};
 use palmistry_bodies::mechanics::spatial::{SpatialDrive, SpatialPalm};
 use palmistry_io::foreign::name_of;
-use palmistry_lang::{Problem, ReadError, load};
+use palmistry_lang::{Code, Problem, ReadError, load};
 use palmistry_observe::{FaultRules, OnFault};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -148,7 +148,7 @@ struct Wrong<'a, 'b>(&'a Places<'b>);
 
 impl Wrong<'_, '_> {
     fn at(&self, place: &str, message: impl Into<String>, help: &str) -> Problem {
-        Problem::new(&self.0.value(place), message, "this").help(help)
+        Problem::new(Code::SceneValue, &self.0.value(place), message, "this").help(help)
     }
 
     fn positive(&self, place: &str, value: Option<f64>) -> Result<(), Problem> {

@@ -3,7 +3,7 @@
 use super::super::scene::place::Places;
 use super::readings::SpaceSensor;
 use palmistry_bodies::mechanics::spatial::{SolidForm, SpatialDrive, SpatialPalm};
-use palmistry_lang::{Problem, ReadError};
+use palmistry_lang::{Code, Problem, ReadError};
 use palmistry_observe::FaultRules;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -73,6 +73,6 @@ impl SpaceScene {
     /// An error at a value of this scene.
     pub fn error_at(&self, place: &str, message: impl Into<String>, help: impl Into<String>) -> ReadError {
         let span = Places::of(&self.text).map_or(0..0, |places| places.value(place));
-        Problem::new(&span, message, "here").help(help).locate(&self.name, &self.text)
+        Problem::new(Code::SceneValue, &span, message, "here").help(help).locate(&self.name, &self.text)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::super::scene::place::Places;
 use palmistry_bodies::mechanics::spatial::{Harmonic, SolidForm};
-use palmistry_lang::{Problem, nearest};
+use palmistry_lang::{Code, Problem, nearest};
 use serde::Deserialize;
 
 /// The kinds, each with its keys.
@@ -47,7 +47,7 @@ impl ShapeKeys {
     pub fn form(self, places: &Places<'_>, at: &str, depth: usize) -> Result<SolidForm, Problem> {
         let wrong = |key: &str, message: String, help: String| {
             let place = if key.is_empty() { at.to_owned() } else { format!("{at}.{key}") };
-            Problem::new(&places.value(&place), message, "this shape").help(help)
+            Problem::new(Code::SceneValue, &places.value(&place), message, "this shape").help(help)
         };
         let names = KINDS.map(|(name, _)| name);
         let Some((_, own)) = KINDS.iter().find(|(name, _)| *name == self.kind) else {

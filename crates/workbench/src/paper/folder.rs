@@ -3,7 +3,7 @@
 use super::numbering::Numbering;
 use palmistry_io::file;
 use palmistry_io::foreign::{name_of, shown_path};
-use palmistry_lang::{Problem, ReadError, System, load, nearest};
+use palmistry_lang::{Code, Problem, ReadError, System, load, nearest};
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::path::{Path, PathBuf};
@@ -114,8 +114,9 @@ impl Paper {
     /// What is wrong, and where: there is no such folder, it holds no proof file, `paper.toml` names a file that is not there.
     pub fn read(path: &Path) -> Result<Paper, ReadError> {
         let shown = shown_path(path);
-        let refuse =
-            |message: String, help: &str| Problem::new(&(0..0), message, "").help(help).locate(&shown, "");
+        let refuse = |message: String, help: &str| {
+            Problem::new(Code::Paper, &(0..0), message, "").help(help).locate(&shown, "")
+        };
         if file::is_file(path) {
             let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
             if name == MANIFEST {
@@ -148,10 +149,11 @@ impl Paper {
 
     fn described(manifest: &Path, folder: &Path, files: &[String]) -> Result<Paper, ReadError> {
         let name = name_of(manifest);
-        let text = load(manifest).map_err(|message| Problem::new(&(0..0), message, "").locate(&name, ""))?;
+        let text = load(manifest)
+            .map_err(|message| Problem::new(Code::Paper, &(0..0), message, "").locate(&name, ""))?;
         let keys: Keys = toml::from_str(&text).map_err(|error| {
             let span = error.span().unwrap_or(0..0);
-            Problem::new(&span, error.message().replace('\n', ", "), "here")
+            Problem::new(Code::Paper, &span, error.message().replace('\n', ", "), "here")
                 .help("the keys are: title, authors, year, source, equations, order, scenes, trade, derivatives")
                 .locate(&name, &text)
         })?;
@@ -160,7 +162,7 @@ impl Paper {
                 return Ok(named.get_ref().clone());
             }
             let message = format!("there is no file {}", shown_path(&folder.join(named.get_ref())));
-            let problem = Problem::new(&named.span(), message, "named here");
+            let problem = Problem::new(Code::Paper, &named.span(), message, "named here");
             Err(match nearest(named.get_ref(), files.iter().map(String::as_str)) {
                 Some(near) => problem.help(format!("perhaps you meant '{near}'")),
                 None => problem.help("files are named as seen from the folder of the paper"),
@@ -174,19 +176,20 @@ impl Paper {
             }
             let message = format!("{} is no scene that can be read", shown_path(&folder.join(&found)));
             let help = "a scene is a TOML file; `palmistry observe FILE` says what is wrong in it";
-            Err(Problem::new(&named.span(), message, "named here").help(help).locate(&name, &text))
+            Err(Problem::new(Code::Paper, &named.span(), message, "named here")
+                .help(help)
+                .locate(&name, &text))
         };
         let order: Vec<String> = keys.order.iter().map(there).collect::<Result<_, _>>()?;
         if let Some(again) = (1..order.len()).find(|place| order[..*place].contains(&order[*place])) {
             let message = format!("'{}' is named twice", order[again]);
-            return Err(
-                Problem::new(&keys.order[again].span(), message, "the second time").locate(&name, &text)
-            );
+            return Err(Problem::new(Code::Paper, &keys.order[again].span(), message, "the second time")
+                .locate(&name, &text));
         }
         let numbering = keys.equations.map(|Equations(parts)| Numbering(parts)).unwrap_or_default();
         if numbering.count() > MOST_EQUATIONS {
             let message = format!("more than {MOST_EQUATIONS} equations");
-            return Err(Problem::new(&(0..0), message, "").locate(&name, &text));
+            return Err(Problem::new(Code::Paper, &(0..0), message, "").locate(&name, &text));
         }
         Ok(Paper {
             title: keys.title,

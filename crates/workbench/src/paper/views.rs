@@ -3,8 +3,11 @@
 use super::left_out::LeftOut;
 use crate::tradeoff::{Landscape, LandscapeRows, Map, PictureRows, Slope};
 use dashu::rational::RBig;
-use palmistry_lang::{CoordinateRange, LineView, MapView, NamedSet, System, Value};
-use palmistry_math::expression::NodeId;
+use palmistry_lang::{
+    CoordinateRange, LineEnd, LineView, MapView, NamedSet, Point, Range, System, UnknownKind, Value,
+};
+use palmistry_math::expression::{NodeId, Symbol};
+use palmistry_math::number::parse_decimal;
 use palmistry_rank::observability::{CodistributionError, OWN_ROWS};
 use palmistry_rank::sweep::{BranchAnswer, RankAnswer, RankError, RankQuestion, SweepReport, answer_rank};
 use std::sync::atomic::AtomicBool;
@@ -109,11 +112,19 @@ pub(super) fn rank_on(system: &System, set: Option<&NamedSet>, seed: u64, interr
 /// The maps and lines of a file, and what of them cannot be drawn.
 pub(super) fn draw(
     system: &System,
+    observable: &[String],
     seed: u64,
     left_out: &mut Vec<LeftOut>,
 ) -> (Vec<MapFound>, Vec<LineFound>) {
     let own = own_rows(system);
     let mut maps = Vec::new();
+    if system.maps.is_empty()
+        && let Some(view) = map_by_default(system, observable)
+        && let Ok(found) = map(system, own.as_deref(), &view, seed)
+    {
+        // nobody has asked for it: what cannot be drawn is not missed
+        maps.push(MapFound { view, maps: found });
+    }
     for view in &system.maps {
         match map(system, own.as_deref(), view, seed) {
             Ok(found) => maps.push(MapFound { view: view.clone(), maps: found }),
@@ -127,7 +138,83 @@ pub(super) fn draw(
             Err(why) => left_out.push(LeftOut { what: format!("the line \"{}\"", view.title), why }),
         }
     }
+    if system.lines.is_empty() && !observable.is_empty() {
+        // where a line ends is an expression of the system in which it is drawn
+        let mut copy = system.clone();
+        for view in lines_by_default(&mut copy) {
+            if let Ok((rows, slope)) = line(&copy, own.as_deref(), &view, seed) {
+                lines.push(LineFound { view, rows, slope });
+            }
+        }
+    }
     (maps, lines)
+}
+
+/// Of larger systems nothing is drawn that nobody has asked for.
+const MOST_UNKNOWNS: usize = 12;
+/// So many lines are drawn by default.
+const MOST_LINES: usize = 3;
+
+/// The states over which something is drawn where the file does not say it: those that move and have a name of their own.
+fn moving_unknowns(system: &System) -> Vec<Symbol> {
+    let is_one = |symbol: &Symbol| {
+        system.unknown_kind(*symbol) == Some(UnknownKind::State)
+            && !system.symbol_name(*symbol).contains(['@', '\''])
+    };
+    system.states.iter().copied().filter(is_one).collect()
+}
+
+/// A map over the first two states, of the worst of them where all are observable, else of the first one that is.
+fn map_by_default(system: &System, observable: &[String]) -> Option<MapView> {
+    if system.unknown_count() > MOST_UNKNOWNS || observable.is_empty() {
+        return None;
+    }
+    let [x, y] = moving_unknowns(system).into_iter().take(2).collect::<Vec<_>>().try_into().ok()?;
+    let axis = |symbol: Symbol| {
+        let given = system
+            .symbol_info(symbol)
+            .and_then(|info| info.range.clone())
+            .filter(|range| range.low < range.high);
+        let wide = if system.is_angle(symbol) { 3 } else { 1 };
+        let range = given.unwrap_or(Range { low: RBig::from(-wide), high: RBig::from(wide) });
+        CoordinateRange { name: system.symbol_name(symbol).to_owned(), low: range.low, high: range.high }
+    };
+    let of = (observable.len() < system.unknown_count()).then(|| observable[0].clone());
+    let title = match &of {
+        None => "what the outputs tell".to_owned(),
+        Some(name) => format!("what the outputs tell of {name}"),
+    };
+    Some(MapView {
+        title,
+        axes: [axis(x), axis(y)],
+        at: Point::default(),
+        order: None,
+        of,
+        caption: None,
+        span: 0..0,
+    })
+}
+
+/// Lines into the sets that the file names, of those whose first equation gives a state its value.
+fn lines_by_default(system: &mut System) -> Vec<LineView> {
+    if system.unknown_count() > MOST_UNKNOWNS {
+        return Vec::new();
+    }
+    let states = moving_unknowns(system);
+    let mut found: Vec<LineView> = Vec::new();
+    for set in system.sets.clone().into_iter().filter(|set| !set.is_pole && set.written.len() == 1) {
+        let Some((name, value)) = set.written[0].split_once('=') else { continue };
+        let state = states.iter().find(|state| system.symbol_name(**state) == name.trim());
+        let (Some(state), Some(value)) = (state, parse_decimal(value.trim())) else { continue };
+        let (node, value) = (system.graph.symbol(*state), system.graph.rational(value));
+        let end = LineEnd::Zero(system.graph.sub(node, value));
+        let moving = name.trim().to_owned();
+        found.push(LineView { title: set.name, moving, end, from: Point::default(), of: None, span: 0..0 });
+        if found.len() == MOST_LINES {
+            break;
+        }
+    }
+    found
 }
 
 fn map(

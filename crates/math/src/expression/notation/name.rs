@@ -45,6 +45,62 @@ pub(super) fn greek(letters: &str) -> Option<(char, &'static str)> {
     GREEK.iter().find(|(name, _, _)| *name == letters).map(|(_, letter, latex)| (*letter, *latex))
 }
 
+/// Indices that people write out.
+const INDICES: [&str; 19] = [
+    "max", "min", "in", "out", "ref", "eq", "tot", "cat", "sat", "crit", "obs", "off", "on", "rel", "env",
+    "act", "des", "est", "rr",
+];
+
+/// Two letters that are a word or a difference, and no letter with an index.
+const NO_INDEX: [&str; 14] =
+    ["dt", "dx", "dy", "dz", "ds", "dq", "du", "dv", "go", "no", "id", "is", "of", "to"];
+
+/// Where the index of a name begins whose letter and index are written in one, as people write `ia`, `Lq`, `Fyf`, `alphaf`, `Vmax`. A rule
+/// of thumb: a word is no letter with an index, and where it is taken for one a file may say how the name looks.
+fn index_within(letters: &str) -> Option<usize> {
+    let consonants = |text: &str| !text.chars().any(|c| "aeiouAEIOU".contains(c));
+    if greek(letters).is_some() || NO_INDEX.contains(&letters) {
+        return None;
+    }
+    let begins = |name: &&str| letters.len() > name.len() && letters.starts_with(*name);
+    let names = GREEK.iter().map(|(name, _, _)| *name).filter(begins);
+    if let Some(name) = names.max_by_key(|name| name.len()) {
+        let index = &letters[name.len()..];
+        let is_one = INDICES.contains(&index)
+            || name.len() > 2 && index.len() < 4 && (index.len() == 1 || consonants(index));
+        if is_one || name.len() == 2 && name != "pi" && matches!(index, "x" | "y" | "z" | "s" | "k") {
+            return Some(name.len());
+        }
+    }
+    let (first, index) = letters.split_at(letters.chars().next()?.len_utf8());
+    let is_large = first.chars().all(|c| c.is_ascii_uppercase());
+    let is_one = match index.len() {
+        0 => false,
+        1 => true,
+        2 => {
+            INDICES.contains(&index)
+                || is_large && index.chars().any(|c| c.is_ascii_lowercase())
+                || consonants(letters)
+        }
+        _ => INDICES.contains(&index),
+    };
+    is_one.then_some(first.len())
+}
+
+/// A letter of LaTeX by its name here.
+fn letter(latex: &str) -> Option<String> {
+    let mut letters = latex.chars();
+    match (letters.next(), letters.next()) {
+        (Some(one), None) if one.is_ascii_alphabetic() => Some(latex.to_owned()),
+        _ => {
+            let known = GREEK
+                .iter()
+                .find(|(name, _, command)| *command == latex || latex.strip_prefix('\\') == Some(name));
+            known.map(|(name, ..)| (*name).to_owned())
+        }
+    }
+}
+
 /// A letter in the slanted alphabet of mathematics (Unicode, Mathematical Alphanumeric Symbols): what MathML makes of a single
 /// letter by itself, for places where more stands beside it.
 fn slanted(letter: char) -> Option<char> {
@@ -66,6 +122,8 @@ fn lowered(digits: &str) -> Option<String> {
 }
 
 impl Accent {
+    const ALL: [Accent; 5] = [Accent::TwoDots, Accent::Dot, Accent::Tilde, Accent::Bar, Accent::Hat];
+
     /// The accent that the last part of a name says.
     fn of(part: &str) -> Option<Accent> {
         Some(match part {
@@ -111,12 +169,13 @@ impl FormulaName {
         let mut parts = own.split('_');
         let first = parts.next()?;
         let end = first.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(first.len());
-        let (letters, rest) = first.split_at(end);
-        let mut name =
-            FormulaName { from, letters: letters.to_owned(), index: Vec::new(), accents: Vec::new() };
+        let letters = &first[..end];
         if letters.is_empty() {
             return None;
         }
+        let (letters, rest) = first.split_at(index_within(letters).unwrap_or(end));
+        let mut name =
+            FormulaName { from, letters: letters.to_owned(), index: Vec::new(), accents: Vec::new() };
         if !rest.is_empty() {
             name.index.push(rest.to_owned());
         }
@@ -128,6 +187,42 @@ impl FormulaName {
             }
         }
         name.index.extend(component.map(str::to_owned));
+        Some(name)
+    }
+
+    /// The look that LaTeX gives a name, of as much of LaTeX as names need: a letter (`F`, `\\alpha`, `\\mathrm{Re}`), perhaps below accents
+    /// (`\\dot{x}`), perhaps with an index (`F_{yf}`, `\\alpha_f`). None where it is anything else.
+    pub fn of_latex(text: &str) -> Option<FormulaName> {
+        let mut name =
+            FormulaName { from: Vec::new(), letters: String::new(), index: Vec::new(), accents: Vec::new() };
+        let (base, index) = match text.split_once('_') {
+            Some((base, index)) => (base, Some(index)),
+            None => (text, None),
+        };
+        let mut base = base.trim();
+        while let Some((accent, inside)) = Accent::ALL.into_iter().find_map(|accent| {
+            let inside = base.strip_prefix(accent.latex())?.strip_prefix('{')?.strip_suffix('}')?;
+            Some((accent, inside))
+        }) {
+            name.accents.insert(0, accent);
+            base = inside.trim();
+        }
+        let is_word = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_alphabetic());
+        name.letters = match base.strip_prefix("\\mathrm{").and_then(|word| word.strip_suffix('}')) {
+            Some(word) => Some(word.to_owned()).filter(|word| is_word(word)),
+            None => letter(base),
+        }?;
+        let Some(index) = index.map(str::trim) else { return Some(name) };
+        let index = match index.strip_prefix('{').and_then(|index| index.strip_suffix('}')) {
+            Some(index) => index,
+            None if index.chars().count() == 1 || index.starts_with('\\') => index,
+            None => return None,
+        };
+        for part in index.split(',').map(str::trim) {
+            let part = part.strip_prefix("\\mathrm{").and_then(|word| word.strip_suffix('}')).unwrap_or(part);
+            let is_plain = !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric());
+            name.index.push(if is_plain { part.to_owned() } else { letter(part)? });
+        }
         Some(name)
     }
 

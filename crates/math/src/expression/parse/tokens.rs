@@ -102,9 +102,10 @@ pub fn sign<'a>(text: &'static str) -> impl Parser<Text<'a>, (), ErrMode<Expecte
 }
 
 /// Words that begin something and so cannot be names.
-pub const RESERVED: [&str; 32] = [
+pub const RESERVED: [&str; 33] = [
     "system",
     "assume",
+    "latex",
     "cite",
     "use",
     "state",
@@ -138,8 +139,9 @@ pub const RESERVED: [&str; 32] = [
 ];
 
 /// Words with a meaning at some places; elsewhere they are names.
-pub const SPECIAL: [&str; 30] = [
+pub const SPECIAL: [&str; 31] = [
     "proved",
+    "conclusion",
     "refuted",
     "restates",
     "consequence",

@@ -52,9 +52,25 @@ const WORDS: [&str; 25] = [
     "solutions",
 ];
 
+/// How a name looks: as the file says, of a component what it says of the vector, else by its letters.
+fn look_of(name: &str, own: &BTreeMap<String, FormulaName>) -> Option<FormulaName> {
+    let base = name.split_once('[');
+    own.get(name)
+        .cloned()
+        .or_else(|| {
+            let (vector, component) = base?;
+            let mut look = own.get(vector)?.clone();
+            look.index.push(component.strip_suffix(']')?.to_owned());
+            Some(look)
+        })
+        .or_else(|| FormulaName::of(name))
+}
+
 /// Lays out the expressions of one text.
 pub struct FormulaLayout<'a> {
     source: &'a str,
+    /// The looks that a file gives to its names.
+    own: &'a BTreeMap<String, FormulaName>,
     /// The names that are set as they are written: their looks would be those of others.
     alike: BTreeSet<String>,
 }
@@ -62,27 +78,38 @@ pub struct FormulaLayout<'a> {
 impl<'a> FormulaLayout<'a> {
     /// A layout for expressions that were read from a text and stand in one formula.
     pub fn new<'e>(source: &'a str, expressions: impl IntoIterator<Item = &'e Expr>) -> Self {
+        static NONE: BTreeMap<String, FormulaName> = BTreeMap::new();
+        Self::with_looks(source, expressions, &NONE)
+    }
+
+    /// The same with looks of some names that are not what they would be by their letters.
+    pub fn with_looks<'e>(
+        source: &'a str,
+        expressions: impl IntoIterator<Item = &'e Expr>,
+        own: &'a BTreeMap<String, FormulaName>,
+    ) -> Self {
         let mut names = BTreeSet::new();
         let mut derives = false;
         expressions.into_iter().for_each(|expression| collect(expression, &mut names, &mut derives));
         let mut looks: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for name in names {
-            if let Some(look) = FormulaName::of(&name) {
+            if let Some(look) = look_of(&name, own) {
                 looks.entry(latex(&Formula::Name(look))).or_default().push(name);
             }
         }
         let means_something = |name: &str| {
-            FormulaName::of(name).is_some_and(|look| {
-                look.from.is_empty()
-                    && (WORDS.contains(&look.letters.as_str()) && name != "rank"
-                        || look.letters == "L" && derives && !look.index.is_empty())
-            })
+            !own.contains_key(name)
+                && FormulaName::of(name).is_some_and(|look| {
+                    look.from.is_empty()
+                        && (WORDS.contains(&look.letters.as_str()) && name != "rank"
+                            || look.letters == "L" && derives && !look.index.is_empty())
+                })
         };
         let shared = |(_, names): (String, Vec<String>)| {
             let alike = names.len() > 1;
             names.into_iter().filter(move |name| alike || means_something(name)).collect::<Vec<_>>()
         };
-        FormulaLayout { source, alike: looks.into_iter().flat_map(shared).collect() }
+        FormulaLayout { source, own, alike: looks.into_iter().flat_map(shared).collect() }
     }
 
     /// An expression.
@@ -173,7 +200,7 @@ impl<'a> FormulaLayout<'a> {
     }
 
     fn name(&self, text: &str) -> Formula {
-        match FormulaName::of(text) {
+        match look_of(text, self.own) {
             Some(name) if !self.alike.contains(text) => match text {
                 "rank" => Formula::Word("rank"),
                 _ => Formula::Name(name),

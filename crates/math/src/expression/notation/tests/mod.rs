@@ -184,6 +184,69 @@ fn nothing_overflows() {
     balanced(&latex(&formula));
 }
 
+/// A letter and its index in one, as people write them; words stay words, and what another name looks like is spelled out.
+#[test]
+fn names_of_a_letter_and_an_index() {
+    for (name, expected) in [
+        ("ia", "i_{a}"),
+        ("Lq", "L_{q}"),
+        ("Fyf", "F_{\\mathrm{yf}}"),
+        ("alphaf", "\\alpha_{f}"),
+        ("omegam", "\\omega_{m}"),
+        ("thetaref", "\\theta_{\\mathrm{ref}}"),
+        ("Vmax", "V_{\\mathrm{max}}"),
+        ("mumax", "\\mu_{\\mathrm{max}}"),
+        ("kcat", "k_{\\mathrm{cat}}"),
+        ("Kin", "K_{\\mathrm{in}}"),
+        ("Kx1", "K_{x1}"),
+        ("ia_dot", "\\dot{i}_{a}"),
+        ("phi0", "\\varphi_{0}"),
+        ("mass", "\\mathrm{mass}"),
+        ("old", "\\mathrm{old}"),
+        ("dose", "\\mathrm{dose}"),
+        ("pin", "p_{\\mathrm{in}}"),
+        ("dt", "\\mathrm{dt}"),
+        ("left", "\\mathrm{left}"),
+        ("radius", "\\mathrm{radius}"),
+        ("x*ia + i_a", "x\\,\\mathtt{ia} + \\mathtt{i\\_a}"),
+    ] {
+        assert_eq!(in_latex(name), expected, "{name}");
+    }
+}
+
+/// What a file may say of a name: letters, accents and indices, and nothing else of LaTeX.
+#[test]
+fn looks_in_latex() {
+    for (written, expected) in [
+        ("F_{yf}", "F_{\\mathrm{yf}}"),
+        ("\\alpha_f", "\\alpha_{f}"),
+        ("\\dot{\\tilde{r}}_{2}", "\\dot{\\tilde{r}}_{2}"),
+        ("\\mathrm{Re}", "\\mathrm{Re}"),
+        ("x_{1, \\mathrm{max}}", "x_{1,\\mathrm{max}}"),
+        ("\\phi_\\psi", "\\varphi_{\\psi}"),
+    ] {
+        let look = FormulaName::of_latex(written).unwrap_or_else(|| panic!("{written}"));
+        assert_eq!(latex(&Formula::Name(look)), expected, "{written}");
+    }
+    for bad in [
+        "",
+        "Force",
+        "F_yf",
+        "x^2",
+        "\\frac{a}{b}",
+        "\\href{x}{y}",
+        "<b>",
+        "x_{<}",
+        "\\dot{x",
+        "x_",
+        "\\input{a}",
+        "x_{}",
+        "\\mathrm{}",
+    ] {
+        assert!(FormulaName::of_latex(bad).is_none(), "{bad}");
+    }
+}
+
 #[test]
 fn names_in_letters() {
     for (name, letters) in [

@@ -1,0 +1,122 @@
+//! A system as a paper writes it: what its letters are, its fields, its outputs.
+
+use crate::axis::unit_of;
+use crate::formula::{definition_mathml, formula_mathml_in};
+use crate::names::plain_number;
+use maud::{Markup, PreEscaped, html};
+use palmistry_lang::{FieldAsWritten, Kind, Looks, System, SystemAsWritten, Time, UnknownKind};
+use palmistry_math::expression::Symbol;
+
+/// Expressions that are longer as texts are not set as formulas.
+const LONGEST: usize = 1500;
+/// Outputs of fewer letters stand on one line.
+const SHORT: usize = 12;
+/// More abbreviations than these are folded.
+const FEW: usize = 6;
+
+/// The system as mathematics: its letters with their units, fields, outputs, and what abbreviations stand for.
+pub fn system_mathematics(system: &System) -> Markup {
+    let SystemAsWritten { fields, outputs, definitions } = system.as_written();
+    let looks = &system.looks;
+    let mark = if system.time == Time::Discrete { "\u{207a}" } else { "\u{2032}" };
+    let abbreviations = html! {
+        table.system {
+            @for (name, text) in &definitions { tr { td { (definition(name, text, looks)) } } }
+        }
+    };
+    html! {
+        (letters(system))
+        @for field in &fields { (field_rows(field, mark, looks)) }
+        @if !outputs.is_empty() {
+            @if outputs.iter().all(|text| text.len() < SHORT) {
+                p.field { "measured " @for (place, text) in outputs.iter().enumerate() { @if place > 0 { ", " } (formula(text, looks)) } }
+            } @else {
+                p.field { "measured" }
+                table.system { @for text in &outputs { tr { td { (formula(text, looks)) } } } }
+            }
+        }
+        @if !definitions.is_empty() && definitions.len() <= FEW { p.field { "where" } (abbreviations) }
+        @else if !definitions.is_empty() {
+            details { summary { "the " (definitions.len()) " abbreviations" } (abbreviations) }
+        }
+    }
+}
+
+fn field_rows(field: &FieldAsWritten, mark: &str, looks: &Looks) -> Markup {
+    html! {
+        p.field { (field.role.name()) " " (formula(&field.name, looks)) }
+        table.system {
+            @for (state, rate) in &field.rates {
+                tr {
+                    @if state == "others" { td colspan="3" { "the other states stand still" } }
+                    @else {
+                        td { (formula(state, looks)) (mark) } td { "=" } td { (formula(rate, looks)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What each letter is, kind by kind.
+fn letters(system: &System) -> Markup {
+    let looks = &system.looks;
+    let coordinates: Vec<(Symbol, Option<UnknownKind>)> =
+        system.states.iter().map(|symbol| (*symbol, system.unknown_kind(*symbol))).collect();
+    let of = |wanted: Option<UnknownKind>| -> Vec<Symbol> {
+        let own = coordinates.iter().filter(|(_, kind)| *kind == wanted);
+        // the states of further experiments, and the derivatives of signals, have names of their own
+        own.map(|(symbol, _)| *symbol)
+            .filter(|symbol| !system.symbol_name(*symbol).contains(['@', '\'']))
+            .collect()
+    };
+    let is_coordinate = |symbol: &Symbol| system.states.contains(symbol);
+    let constants = system.symbols().filter(|(_, info)| info.kind == Kind::Parameter);
+    let constants = constants.map(|(symbol, _)| symbol).filter(|symbol| !is_coordinate(symbol)).collect();
+    let kinds: [(&str, Vec<Symbol>); 5] = [
+        ("states", of(Some(UnknownKind::State))),
+        ("known", of(None)),
+        ("unknown constants", of(Some(UnknownKind::Parameter))),
+        ("unknown signals", of(Some(UnknownKind::Signal))),
+        ("known constants", constants),
+    ];
+    html! {
+        p {
+            @for (place, (kind, symbols)) in kinds.iter().filter(|(_, symbols)| !symbols.is_empty()).enumerate() {
+                @if place > 0 { "; " }
+                @if place == 0 { (kind[..1].to_uppercase()) (kind[1..]) } @else { (kind) }
+                " "
+                @for (place, symbol) in symbols.iter().enumerate() {
+                    @let name = system.symbol_name(*symbol);
+                    @if place > 0 { ", " }
+                    (formula(name, looks))
+                    @if let Some(value) = system.symbol_info(*symbol).and_then(|info| info.default.as_ref()) { " = " (plain_number(value)) }
+                    @if let Some(unit) = unit_of(system, name) { " (" (unit) ")" }
+                }
+            }
+            "."
+            @if !system.initial_conditions().is_empty() { " Some initial conditions are known." }
+        }
+    }
+}
+
+fn definition(name: &str, text: &str, looks: &Looks) -> Markup {
+    match definition_mathml(name, text, looks).filter(|_| text.len() <= LONGEST) {
+        Some(formula) => PreEscaped(formula),
+        None => html! { code { (name) " = " (cut(text)) } },
+    }
+}
+
+fn formula(text: &str, looks: &Looks) -> Markup {
+    match formula_mathml_in(text, looks).filter(|_| text.len() <= LONGEST) {
+        Some(formula) => PreEscaped(formula),
+        None => html! { code { (cut(text)) } },
+    }
+}
+
+fn cut(text: &str) -> String {
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{} ...", &text[..end]),
+        None => text.to_owned(),
+    }
+}
