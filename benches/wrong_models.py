@@ -250,7 +250,7 @@ def main():
                     done = run(options.program, folder, told, "--data", str(record), "--json")
                     answer = json.loads(done.stdout)
                     updates = answer["observers"][0]["updates"] if "observers" in answer else []
-                    words[updates[0]["standing"].split(":")[0] if updates else "refused"] += 1
+                    words[updates[0]["status"].split(":")[0] if updates else "refused"] += 1
                     noticed += done.returncode != 0
                     runs += 1
                     if done.returncode == 0:

@@ -64,7 +64,7 @@ found.generic, found.dimension, found.histogram, found.certified
 # however long one drives.
 
 # %%
-assert found.generic == 2 and found.json["longer_words_cannot_raise_it"]
+assert found.generic == 2 and found.json["higher_derivatives_cannot_raise_it"]
 assert found.histogram == {2: 1000} and found.certified == 1000
 {str(name): str(verdict) for name, verdict in zip(found.unknowns["name"], found.unknowns["verdict"])}
 
@@ -75,9 +75,9 @@ assert found.histogram == {2: 1000} and found.certified == 1000
 # closed form, and so are functions of the states that *are* seen.
 
 # %%
-[field] = found.json["unseen_fields"]["fields"]
+[field] = found.json["unobservable_directions"]["fields"]
 assert field["components"] == {"x": "-y", "y": "x", "theta": "1"}
-seen = [function["text"] for function in found.json["unseen_fields"]["functions"]]
+seen = [function["text"] for function in found.json["unobservable_directions"]["functions"]]
 assert sorted(seen) == ["x*cos(theta) + y*sin(theta)", "x*sin(theta) - y*cos(theta)"]
 print("unobservable direction:", field["text"])
 print("seen:    ", ", ".join(seen))

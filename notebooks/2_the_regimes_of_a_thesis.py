@@ -110,7 +110,7 @@ assert 30 < seen["1/100"]["r1"] / seen["1/10"]["r1"] < 300 and 30 < seen["1/100"
 # on the set itself, where states are drawn that meet the equation exactly, two are lost
 floor = same_rate.rank(samples=100, where="omega0 = 0")
 assert floor.histogram == {4: 100} and floor.certified == 100
-[kind["example"] for kind in floor.json["unseen"]]
+[kind["example"] for kind in floor.json["unobservable"]]
 
 # %% [markdown]
 # ## The determinants, and why their digits are wrong

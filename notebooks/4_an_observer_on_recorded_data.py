@@ -85,7 +85,7 @@ found = observe(folder / "drive.toml")
 [observer] = found.observers
 [update] = observer["updates"]
 fit = update["fit"]
-print(f"{update['standing']}; chi square {fit['chi_square']:.0f} for {fit['degrees_of_freedom']} degrees of freedom; it fits: {fit['fits']}")
+print(f"{update['status']}; chi square {fit['chi_square']:.0f} for {fit['degrees_of_freedom']} degrees of freedom; it fits: {fit['fits']}")
 for name, true in zip(("px", "py", "theta"), truth[0]):
     state = update["states"][name]
     print(f"{name:6} {state['recovered']:9.4f} +- {state['bound']:.4f}   true {true:7.4f}, off by {abs(state['recovered'] - true) / state['bound']:.1f} bounds")
@@ -95,7 +95,7 @@ for name, true in zip(("px", "py", "theta"), truth[0]):
 # an error of one bound is what is to be expected, and of four is not.
 
 # %%
-assert update["standing"] == "converged" and fit["fits"] and fit["degrees_of_freedom"] == 300
+assert update["status"] == "converged" and fit["fits"] and fit["degrees_of_freedom"] == 300
 for name, true in zip(("px", "py", "theta"), truth[0]):
     assert abs(update["states"][name]["recovered"] - true) < 4 * update["states"][name]["bound"] < 0.02
 

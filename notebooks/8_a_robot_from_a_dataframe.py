@@ -99,4 +99,4 @@ print("heading and bias are correlated by", round(correlation[2, 3], 2))
 careless = palmistry.observe(robot, log, noise=NOISE, unknowns=["px", "py", "theta"], known={"bias": 0})
 assert not careless.fits
 update = careless.updates[0]
-print(update["standing"], f"chi-square {update['fit']['chi_square']:.0f} of {update['fit']['degrees_of_freedom']}")
+print(update["status"], f"chi-square {update['fit']['chi_square']:.0f} of {update['fit']['degrees_of_freedom']}")

@@ -145,7 +145,7 @@ def compare_fields(binary, text, folder, limit=60):
         run = subprocess.run(
             [binary, "rank", str(path), "--json", "--samples", "2"], capture_output=True, text=True, timeout=limit
         )
-        found = json.loads(run.stdout).get("unseen_fields")
+        found = json.loads(run.stdout).get("unobservable_directions")
     except NoSuchState:
         return "no state", ""
     except subprocess.TimeoutExpired:

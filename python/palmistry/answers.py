@@ -209,7 +209,7 @@ class Rank(Answer):
     @property
     def identifiable_functions(self) -> list[str] | None:
         """Functions of the unobservable unknowns that are locally identifiable, in the language; None where they were not looked for or not all were found."""
-        found = self.branches[0].get("unseen_fields")
+        found = self.branches[0].get("unobservable_directions")
         if found is None or found["cut_off"] or found["functions_missing"]:
             return [] if self.generic == self.dimension else None
         return [function["text"] for function in found["functions"]]
@@ -218,7 +218,7 @@ class Rank(Answer):
     def unobservable_directions(self) -> list[dict[str, str]] | None:
         """Vector fields along which no output changes, each as its components by unknown, in the language; None where they were not looked for or not all were
         found."""
-        found = self.branches[0].get("unseen_fields")
+        found = self.branches[0].get("unobservable_directions")
         if found is None or found["cut_off"] or found["fields_missing"]:
             return [] if self.generic == self.dimension else None
         return [field["components"] for field in found["fields"]]
@@ -638,7 +638,7 @@ class Observation(Answer):
         if self.json.get("kind") == "experiments":
             found = self.json["parameters"]
             slopes = {"linear": lambda value: 1.0, "log": lambda value: value, "log10": lambda value: value * numpy.log(10)}
-            unknown = [one["standing"] in ("at a bound", "search not ended") for one in found]
+            unknown = [one["status"] in ("at a bound", "search not ended") for one in found]
             spread = [numpy.nan if held else numpy.inf if one["deviation"] is None else one["deviation"] * slopes[one["scale"]](one["value"]) for one, held in zip(found, unknown)]
             return Table({"name": numpy.array([one["name"] for one in found]), "estimate": numpy.array([one["value"] for one in found], dtype=float), "deviation": numpy.array(spread, dtype=float)})
 
@@ -646,7 +646,7 @@ class Observation(Answer):
         names = [name for name in self._found.sought() if name in states]
         # what was held is not off by what measurements could tell at best
         is_held = bool(self.updates) and self.updates[0].get("held", False)
-        ends = bool(self.updates) and self.updates[0]["standing"].startswith("converged")
+        ends = bool(self.updates) and self.updates[0]["status"].startswith("converged")
         bounds = [numpy.inf if is_held or states[name]["bound"] is None else states[name]["bound"] if ends else numpy.nan for name in names]
         values = [numpy.nan if states[name]["recovered"] is None else states[name]["recovered"] for name in names]
         return Table({"name": numpy.array(names), "estimate": numpy.array(values, dtype=float), "deviation": numpy.array(bounds, dtype=float)})
@@ -654,7 +654,7 @@ class Observation(Answer):
     def covariance(self, window: int = 0) -> numpy.ndarray | None:
         """The covariance of the estimates at the beginning of a window, of shape (estimates, estimates), in their order; None where there is no such window, where its search came to no end,
         or where something is unobservable in it."""
-        if not 0 <= window < len(self.updates) or not self.updates[window]["standing"].startswith("converged"):
+        if not 0 <= window < len(self.updates) or not self.updates[window]["status"].startswith("converged"):
             return None
         return self._found.covariance(window)
 
@@ -666,7 +666,7 @@ class Observation(Answer):
             test = self.json["goodness_of_fit"]
             return test is not None and test["fits"]
         def passes(update: dict[str, Any]) -> bool:
-            return update["standing"] == "converged" and bool(update["fit"]) and update["fit"]["fits"]
+            return update["status"] == "converged" and bool(update["fit"]) and update["fit"]["fits"]
 
         return bool(self.updates) and all(map(passes, self.updates))
 

@@ -302,13 +302,13 @@ class Measurements(unittest.TestCase):
         """A search that stops early, one that cannot see, and two methods of which one is shown."""
         data = {"time": self.times, "phi": self.phi}
         stopped = palmistry.observe(self.system, data, noise=1e-3, guess={"phi": 2.5, "omega": -1.5, "k": 4, "c": 0.9}, method="newton", steps=1)
-        if not stopped.updates[0]["standing"].startswith("converged"):
+        if not stopped.updates[0]["status"].startswith("converged"):
             self.assertTrue(numpy.isnan(stopped.estimates["deviation"]).all())
             self.assertIsNone(stopped.covariance())
         self.assertFalse(stopped.fits)
         both = palmistry.System.parse(self.system.source.replace("-k*sin(phi)", "-k*m*sin(phi)").replace("param c", "param m unknown\nparam c").replace("sample", "sample\n  m in [1, 2]"))
         blind = palmistry.observe(both, data, noise=1e-3)
-        self.assertEqual(blind.updates[0]["standing"], "cannot see")
+        self.assertEqual(blind.updates[0]["status"], "not observable")
         self.assertTrue(numpy.isinf(blind.estimates["deviation"]).all())
         self.assertIsNone(blind.covariance())
         two = palmistry.observe(self.system, data, noise=1e-3, method=["kalman", "trust-region"])

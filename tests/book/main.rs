@@ -15,6 +15,7 @@ mod picture;
 
 mod blocks;
 mod complete;
+mod gallery;
 mod likeness;
 mod pages;
 mod pictures;

@@ -54,7 +54,8 @@ fn every_statement_of_every_file_is_set() {
                 }
                 for (name, text) in system.explanations(&claim.body).definitions {
                     well_formed(
-                        &definition_mathml(&name, &text).unwrap_or_else(|| panic!("{name} = {text}")),
+                        &definition_mathml(&name, &text, &system.looks)
+                            .unwrap_or_else(|| panic!("{name} = {text}")),
                     );
                 }
             }

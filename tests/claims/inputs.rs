@@ -158,7 +158,7 @@ fn ranks_are_asked_at_the_beginning() {
     let file = write(&folder, "start.proof", start);
     let found = json(&palmistry(&["rank", file.to_str().unwrap(), "--samples", "20", "--json"]));
     assert_eq!(found["rank_histogram"], serde_json::json!({ "1": 20 }));
-    assert_eq!(found["longer_words_cannot_raise_it"], true);
+    assert_eq!(found["higher_derivatives_cannot_raise_it"], true);
     assert_eq!(found["conditions"], serde_json::json!(["x = 0"]));
     assert_eq!(found["known"], serde_json::json!(["x"]));
     assert_eq!(found["dimension"], 2);
@@ -332,7 +332,7 @@ fn states_are_drawn_where_these_outputs_are_zero() {
     let found = json(&palmistry(&arguments));
     assert_eq!(found["rank_histogram"], serde_json::json!({ "2": 20 }));
     assert_eq!(found["conditions"], serde_json::json!(["0 = 2*u - x"]));
-    assert_eq!(found["longer_words_cannot_raise_it"], true);
+    assert_eq!(found["higher_derivatives_cannot_raise_it"], true);
     let state = &found["worst_conditioned"]["state"];
     let value = |name: &str| state[name]["value"].as_f64().unwrap_or_else(|| panic!("{name}: {state}"));
     assert_eq!((2.0 * value("u"), 2.0 * value("u'")), (value("x"), value("k")));

@@ -167,7 +167,7 @@ fn fields_of_an_answer_agree() {
                 for (rank, _) in found["rank_histogram"].as_object().unwrap() {
                     assert!(rank.parse::<u64>().unwrap() <= most, "{body}: {found}");
                 }
-                let left = found["degrees_of_freedom_left"].as_u64();
+                let left = found["unobservable_dimension"].as_u64();
                 assert_eq!(left, generic["rank"].as_u64().map(|rank| dimension - rank), "{body}: {found}");
                 let seen = found["unknowns"].as_array().unwrap();
                 let all = seen.iter().all(|one| one["verdict"].as_str().unwrap().starts_with("locally"));

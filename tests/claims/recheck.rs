@@ -520,8 +520,8 @@ fn claims_go_through_a_file_and_back() {
         list.iter().filter(|verdict| verdict["kind"] == kind && verdict["finding"] == finding).count()
     };
     assert!(of("refuted", "confirmed") >= 10 && of("proved", "confirmed") >= 60, "{found}");
-    // two inequalities are tried at states
-    assert_eq!(of("proved", "consistent"), 2, "{found}");
+    // three inequalities are tried at states
+    assert_eq!(of("proved", "consistent"), 3, "{found}");
     assert_eq!(found["not_confirmed"], 0);
 
     let text = std::fs::read_to_string(&verdicts).expect("the file is there");

@@ -244,7 +244,20 @@ fn the_words_of_the_thesis() {
     let on_their_own = claims.iter().filter(|c| c["verdict"] == "erratum" && c.get("follows").is_none());
     let mut ids: Vec<&str> = on_their_own.map(|claim| claim["id"].as_str().unwrap()).collect();
     ids.sort_unstable();
-    let expected = ["3.text.many_poses", "4.71", "4.text.second_derivative", "5.17", "A.section2.generic"];
+    let expected = [
+        "3.text.area",
+        "3.text.many_poses",
+        "3.text.singular",
+        "4.71",
+        "4.text.second_derivative",
+        "5.17",
+        "A.section2.generic",
+    ];
     assert_eq!(ids, expected);
+    // each says where it stands, and whether a conclusion changes
+    for erratum in claims.iter().filter(|claim| claim["verdict"] == "erratum") {
+        let texts = ["passage", "conclusion"].map(|key| erratum[key].as_str().unwrap_or_default());
+        assert!(texts[0].contains("page") && texts[1].len() > 20, "{erratum}");
+    }
     insta::assert_json_snapshot!("words", words);
 }

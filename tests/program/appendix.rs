@@ -51,7 +51,7 @@ fn an_accuracy_is_asked_for_and_not_a_type() {
         assert_eq!(value.len(), wanted, "digits and the point");
         assert_eq!(value[..wanted - 1], exact[..wanted - 1]);
         assert_eq!(
-            (&found["numbers"], &found["verdict"], &found["climbed"]),
+            (&found["numbers"], &found["verdict"], &found["escalated"]),
             (&json!(numbers), &json!(certainty), &json!(climbed))
         );
     }

@@ -257,7 +257,7 @@ fn a_paper_has_scenes_of_every_kind() {
     let output = verified();
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let found = json(&output);
-    assert_eq!((&found["words"]["proved"], found["experiments"].as_array().unwrap().len()), (&1.into(), 3));
+    assert_eq!((&found["counts"]["proved"], found["experiments"].as_array().unwrap().len()), (&1.into(), 3));
     // of the ellipsoid the mass, which nobody has told
     let mass = &found["experiments"][2]["updates"][0]["states"]["m"];
     assert!((mass["recovered"].as_f64().unwrap() - 1.0).abs() < 1e-6, "{mass}");

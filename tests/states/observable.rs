@@ -75,7 +75,8 @@ fn the_radii_are_unseen_where_the_object_does_not_turn() {
     let found = rank(&[SAME_RATE, "--samples", "100", "--at", "omega0=0"]);
     assert_eq!(found["rank_histogram"], json!({ "4": 100 }));
     assert_eq!(found["certified"], 100);
-    let unseen: Vec<&Value> = found["unseen"].as_array().unwrap().iter().map(|u| &u["example"]).collect();
+    let unseen: Vec<&Value> =
+        found["unobservable"].as_array().unwrap().iter().map(|u| &u["example"]).collect();
     assert_eq!(unseen, ["r1", "r2"]);
 }
 
@@ -129,7 +130,7 @@ fn digits_of_the_worst_state_in_closed_form() {
         let exact = &found["worst_to_digits"];
         assert_eq!(exact["singular_values"], json!([first, second]));
         assert_eq!(exact["digits"].to_string(), digits);
-        assert_eq!((exact["verdict"].as_str(), exact["climbed"].as_u64()), (Some("certified"), Some(0)));
+        assert_eq!((exact["verdict"].as_str(), exact["escalated"].as_u64()), (Some("certified"), Some(0)));
         assert_eq!(exact["numbers"], numbers);
         let worst = &found["worst_conditioned"];
         assert_eq!(
@@ -202,8 +203,8 @@ fn an_unobservable_system_is_said_to_be_one() {
     let found = rank(&[file, "--samples", "40"]);
     assert_eq!(found["rank_histogram"], json!({ "1": 40 }));
     assert_eq!(found["certified"], 40);
-    assert_eq!(found["longer_words_cannot_raise_it"], true);
-    assert_eq!(found["unseen"][0]["states"], json!(["x", "y"]));
+    assert_eq!(found["higher_derivatives_cannot_raise_it"], true);
+    assert_eq!(found["unobservable"][0]["states"], json!(["x", "y"]));
     assert!(palmistry(&["prove", file]).status.success());
 }
 
@@ -239,7 +240,7 @@ fn parameters_that_are_held_are_held_everywhere() {
         let file = write(&folder, "held.proof", text);
         let found = rank(&[file.to_str().unwrap(), "--samples", "20"]);
         assert_eq!(found["rank_histogram"], json!({ "3": 20 }), "{param}");
-        assert_eq!(found["words"], json!(["x", "Lf x", "Lf Lf x"]), "{param}");
+        assert_eq!(found["lie_derivatives"], json!(["x", "Lf x", "Lf Lf x"]), "{param}");
     }
 }
 
@@ -263,7 +264,10 @@ fn a_guess_is_not_called_final() {
     let text = "system \"exp\" state x, y drift f x' = 0 y' = 0 output x, (asin(sin(x)) - x)*y
                 sample x in [1/10, 1] y in [1, 2]";
     let file = write(&folder, "exp.proof", text);
-    assert_eq!(rank(&[file.to_str().unwrap(), "--samples", "10"])["longer_words_cannot_raise_it"], false);
+    assert_eq!(
+        rank(&[file.to_str().unwrap(), "--samples", "10"])["higher_derivatives_cannot_raise_it"],
+        false
+    );
 }
 
 /// `sin(phi) = 0` leaves whole turns open; rows with phi/2 in them tell these apart, and no rank is claimed for all.

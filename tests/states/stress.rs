@@ -145,7 +145,7 @@ fn what_holds_for_the_thesis() {
             assert_eq!(line["ways"]["intervals"]["first_wrong"], Value::Null, "{file} {title}");
             let on_the_set = |way: &str, what: &str| line["ways"][way]["on_the_set"][what].as_u64().unwrap();
             let asked = |way: &str| {
-                ["right", "wrong", "cannot_tell", "refused"]
+                ["right", "wrong", "undecided", "refused"]
                     .iter()
                     .map(|what| on_the_set(way, what))
                     .sum::<u64>()

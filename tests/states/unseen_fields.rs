@@ -465,10 +465,10 @@ fn the_program_tells_and_writes() {
     let answer = palmistry(&["rank", path, "--samples", "10", "--reparametrise", out, "--json"]);
     assert!(answer.status.success());
     let answer = json(&answer);
-    assert_eq!(answer["unseen_fields"]["fields"][0]["text"], "d/da - d/db");
-    assert_eq!(answer["unseen_fields"]["fields"][0]["components"]["b"], "-1");
-    assert_eq!(answer["unseen_fields"]["functions"][0]["text"], "a + b");
-    assert_eq!(answer["unseen_fields"]["seen"][0], "x");
+    assert_eq!(answer["unobservable_directions"]["fields"][0]["text"], "d/da - d/db");
+    assert_eq!(answer["unobservable_directions"]["fields"][0]["components"]["b"], "-1");
+    assert_eq!(answer["unobservable_directions"]["functions"][0]["text"], "a + b");
+    assert_eq!(answer["unobservable_directions"]["observable"][0], "x");
     assert_eq!(answer["reparametrised"]["claims"], 4);
     assert_eq!(answer["reparametrised"]["proved"], 4);
     let proved = palmistry(&["prove", out]);

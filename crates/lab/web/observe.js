@@ -232,7 +232,7 @@ export class Observe {
             const last = observer.updates?.at(-1);
             if (last?.fit) {
                 const { fits, chi_square, degrees_of_freedom } = last.fit;
-                parts.push(element("p", { class: fits ? "good" : "bad", "data-fits": String(fits) }, `${last.standing}; ${fits ? "passes" : "does not pass"} the test of fit: chi-square ${shown(chi_square)} at ${degrees_of_freedom} degrees of freedom`));
+                parts.push(element("p", { class: fits ? "good" : "bad", "data-fits": String(fits) }, `${last.status}; ${fits ? "passes" : "does not pass"} the test of fit: chi-square ${shown(chi_square)} at ${degrees_of_freedom} degrees of freedom`));
             }
             if (observer.seconds != null) parts.push(element("p", { class: "hint", "data-seconds": observer.seconds }, `${shown(observer.seconds, 2)} s of the observer, ${shown(took / 1000, 2)} s in all`));
         }

@@ -107,7 +107,7 @@ pub fn advice_json(scene: &Scene, advice: &Advice, interrupted: bool) -> Value {
             expected.bounds.iter().map(|(name, bound)| (name.clone(), number(*bound))).collect();
         json!({
             "windows": expected.windows,
-            "seen": expected.seen,
+            "observable": expected.seen,
             "bounds": bounds,
             "condition": number(expected.condition),
         })

@@ -208,7 +208,7 @@ pub fn slow_json(observed: &SlowObserved<'_>) -> Value {
             "deviations": deviations,
             "order": found.order,
             "kinks": found.kinks.iter().map(|kink| json!({ "angle": kink.angle, "jumps": kink.jumps })).collect::<Vec<_>>(),
-            "misfit": found.misfit,
+            "residual": found.misfit,
             "sigma": found.sigma,
             "explained": answers.explained,
         })

@@ -268,7 +268,7 @@ fn update_json(observed: &SpaceObserved<'_>, update: &SpaceUpdate) -> Value {
     let fit = update.state.as_ref().map(|state| {
         json!({
             "fits": state.fits(), "chi_square": state.chi_square, "degrees_of_freedom": state.degrees,
-            "misfit": state.misfit, "neumann": number(state.ratio), "noise_from": if state.is_stated { "stated" } else { "misfit" },
+            "residual": state.misfit, "neumann": number(state.ratio), "noise_from": if state.is_stated { "stated" } else { "residual" },
             "minimum": state.is_minimum, "left_without_noise": number(state.curved), "bent": number(state.bent),
             "rival": state.rival.map(|rival| json!({ "apart": number(rival.apart), "chi_square": rival.chi_square })),
         })

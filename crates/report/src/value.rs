@@ -29,11 +29,11 @@ pub fn value_json(asked: &ValueAsked<'_>, value: &ValueAtPoint) -> Json {
             "verdict": if value.certainty == Certainty::Certified { "certified" } else { "computed" },
             "numbers": value.rung.name(),
             "width": value.width,
-            "climbed": value.climbed,
+            "escalated": value.climbed,
         }),
         ValueAtPoint::Matrix { entries, .. } => json!({
             "value": rows_of(value),
-            "climbed": entries.iter().filter(|value| value.climbed > 0).count(),
+            "escalated": entries.iter().filter(|value| value.climbed > 0).count(),
         }),
         ValueAtPoint::Rank(rank) => json!({ "value": rank.to_string() }),
     };

@@ -41,7 +41,7 @@ fn a_motion_ends_where_a_contact_breaks_and_the_rest_is_observed() {
         let updates = observer["updates"].as_array().unwrap();
         assert_eq!(updates.len(), (before - 1) / 80);
         for update in updates {
-            assert_eq!(update["standing"], "converged", "{update}");
+            assert_eq!(update["status"], "converged", "{update}");
             for state in update["states"].as_object().unwrap().values() {
                 assert!(state["error"].as_f64().unwrap() < 1e-8, "{update}");
             }

@@ -56,7 +56,7 @@ fn table(header: &str, rows: impl Iterator<Item = Vec<f64>>) -> String {
 /// The first update, and whether it is borne out.
 fn first(found: &Value) -> (&Value, bool) {
     let update = &found["observers"][0]["updates"][0];
-    (update, update["standing"] == "converged")
+    (update, update["status"] == "converged")
 }
 
 /// How many of its bounds a state of an update is off.
@@ -108,7 +108,7 @@ fn what_cannot_be_seen_is_decided_where_a_search_ends() {
                  window = 60\nsteps = 50\n";
     let scene = write(&folder, "scene.toml", scene);
     let (_, found) = observe(&scene, &[]);
-    assert_eq!(first(&found).0["standing"], "cannot see", "{found}");
+    assert_eq!(first(&found).0["status"], "not observable", "{found}");
     // the guess that it keeps is not given what could be known of it as its own deviation
     assert_eq!(first(&found).0["held"], true);
     let output = palmistry(&["observe", scene.to_str().unwrap()]);
@@ -299,11 +299,11 @@ fn a_blow_is_no_blindness() {
         .as_array()
         .unwrap()
         .iter()
-        .map(|update| update["standing"].as_str().unwrap())
+        .map(|update| update["status"].as_str().unwrap())
         .collect();
     assert_eq!(status, Some(1), "{standings:?}");
     assert!(standings[..2].iter().all(|standing| *standing == "converged"), "{standings:?}");
     let fails = standings.contains(&"converged, but does not fit");
-    assert!(fails && !standings.contains(&"cannot see"), "{standings:?}");
+    assert!(fails && !standings.contains(&"not observable"), "{standings:?}");
     assert_eq!(observed("kalman").0, Some(1));
 }

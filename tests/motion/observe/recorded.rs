@@ -129,7 +129,7 @@ fn a_guess_off_needs_what_it_is_off_from() {
 fn a_scene_without_a_body_takes_constants_and_file_as_told() {
     let folder = folder();
     let (_, simulated) = record(&folder, &scene(&folder, "stop"), "x.csv");
-    let told = &simulated["told"];
+    let told = &simulated["given"];
     let known = ["m", "g", "I1", "I2", "rho"].map(|name| format!("{name} = {}", told[name]));
     let (head, observer) = without_body(&std::fs::read_to_string(folder.path().join("scene.toml")).unwrap());
     let observer =
@@ -200,7 +200,7 @@ fn damaged_rows_stop_or_are_skipped_and_are_named_either_way() {
         let samples = lines.len() - 1 - usize::from(what != "a gap"); // a gap takes no row of those that are there
         assert_eq!(found["samples"], samples, "{what}");
         let update = &found["observers"][0]["updates"][0];
-        assert_eq!(update["standing"], "converged", "{what}");
+        assert_eq!(update["status"], "converged", "{what}");
         for (name, state) in update["states"].as_object().unwrap() {
             let truth = simulated["observers"][0]["updates"][0]["states"][name]["true"].as_f64().unwrap();
             let error = (state["recovered"].as_f64().unwrap() / truth - 1.0).abs();

@@ -38,16 +38,16 @@ fn the_scenes_are_as_they_were() {
                     json!({ "true": rounded(&state["true"]), "recovered": rounded(&state["recovered"]) });
             }
             // whether a window is refused by its bound or by the pole itself is a matter of the last digit
-            let end = |update: &Value| match update["standing"].as_str() {
-                Some(word) if word == "cannot see" || word.starts_with("lost") => json!("not seen"),
-                _ => update["standing"].clone(),
+            let end = |update: &Value| match update["status"].as_str() {
+                Some(word) if word == "not observable" || word.starts_with("lost") => json!("not seen"),
+                _ => update["status"].clone(),
             };
             let ends = updates.iter().map(end).collect::<Vec<_>>();
             let method = observer["method"].as_str().unwrap().to_owned();
-            let unseen = &observer["unseen_samples"];
+            let unseen = &observer["unobserved_samples"];
             methods.insert(
                 method,
-                json!({ "first_window": states, "standings": ends, "unseen_samples": unseen }),
+                json!({ "first_window": states, "standings": ends, "unobserved_samples": unseen }),
             );
         }
         let scene = json!({

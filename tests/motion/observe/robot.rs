@@ -102,7 +102,7 @@ fn nothing_closes_where_wheel_2_goes_ahead() {
     let output = palmistry(&["observe", path, "--json"]);
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
     let closure = &found["closure"];
-    assert_eq!((&closure["standing"], &closure["samples"]), (&"computed".into(), &0.into()));
+    assert_eq!((&closure["status"], &closure["samples"]), (&"computed".into(), &0.into()));
     assert!(closure["from"].is_null());
     for own in closure["settings"].as_array().unwrap() {
         assert_eq!(own["with"], own["without"]);

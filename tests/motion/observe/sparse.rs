@@ -329,7 +329,7 @@ fn what_drives_the_model_is_held_or_goes_straight() {
             }
             assert!(number(&json, &format!("/observers/{observer}/updates/0/misfit")) < 1e-7);
         }
-        assert_eq!(json["rows_left_out"], serde_json::json!({ "beginning": 1, "end": 3 }));
+        assert_eq!(json["rows_left_out"], serde_json::json!({ "start": 1, "end": 3 }));
         assert_eq!(
             json["sparse"][0],
             serde_json::json!({ "column": "u", "measured": 20, "interpolated": true })

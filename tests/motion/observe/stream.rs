@@ -349,7 +349,7 @@ fn blind_windows_grow() {
     assert_eq!(updates.len(), 50);
     for (window, update) in told.iter().zip(updates) {
         let own = &window["observers"][0]["updates"][0];
-        for key in ["from", "to", "standing", "inherits"] {
+        for key in ["from", "to", "status", "inherits"] {
             assert_eq!(own[key], update[key], "{own}");
         }
         for name in ["x", "v"] {

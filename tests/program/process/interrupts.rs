@@ -204,7 +204,7 @@ fn what_is_known_before_the_end_is_kept() {
     }
     let found = kept(&ENDLESS, &|found| found["branches"].is_array());
     let whole = json(&finish(&mut program(&[ENDLESS[0], ENDLESS[1], "--samples", "0", "--json"])));
-    for key in ["generic", "unknowns", "degrees_of_freedom_left"] {
+    for key in ["generic", "unknowns", "unobservable_dimension"] {
         assert_eq!(found["branches"][0][key], whole[key]);
     }
     let drops = ["rank", "proofs/moll2002/circular_palms_rank.proof", "--where-it-drops"];

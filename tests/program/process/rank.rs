@@ -51,7 +51,10 @@ fn a_parameter_that_is_nearly_invisible_is_told() {
     // what is not seen at all is no number
     let (found, text) =
         rank("system \"s\" state x, p drift f x' = -x others' = 0 output x sample x in [0, 1] p in [0, 1]");
-    assert_eq!((&row(&found, "p")["median"], &row(&found, "p")["not_seen_at"]), (&Value::Null, &200.into()));
+    assert_eq!(
+        (&row(&found, "p")["median"], &row(&found, "p")["unobservable_at"]),
+        (&Value::Null, &200.into())
+    );
     assert!(text.contains("unobservable"), "{text}");
 }
 
@@ -90,7 +93,7 @@ fn an_unseen_direction_is_a_vector_at_a_state() {
     let exact = |value: &Value| -> RBig {
         parse_decimal(value["exact"].as_str().unwrap_or("0")).unwrap_or_else(|| panic!("{value}"))
     };
-    let unseen = found["unseen"].as_array().unwrap();
+    let unseen = found["unobservable"].as_array().unwrap();
     let states: Vec<&Value> = unseen.iter().map(|direction| &direction["states"]).collect();
     assert_eq!(states, [&serde_json::json!(["x", "y"]), &serde_json::json!(["z"])]);
     for direction in unseen {

@@ -45,7 +45,7 @@ fn open_json(open: &OpenBox) -> Value {
         open.ranges.iter().map(|range| (range.name.clone(), json!([range.low, range.high]))).collect();
     json!({
         "box": ranges,
-        "standing": standing_word(open.standing),
+        "status": standing_word(open.standing),
         "factor": open.factor,
         "avoided": open.avoided,
         "fraction": open.fraction,
@@ -67,7 +67,7 @@ pub fn region_json(answer: &RegionAnswer) -> Value {
         "proved_fraction": answer.proved,
         "proved_fraction_of_sampled": answer.proved_of_sampled,
         "minor_vanishes_fraction": answer.minor_vanishes,
-        "rest_fraction": answer.rest,
+        "open_fraction": answer.rest,
         "boxes": answer.boxes,
         "open_boxes": answer.open_boxes,
         "finished": answer.finished,

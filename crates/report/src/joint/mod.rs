@@ -368,7 +368,7 @@ pub fn joint_json(observed: &JointObserved<'_>) -> Value {
                 "value": entry.value(),
                 "scaled": entry.scaled,
                 "deviation": entry.deviation.map(finite),
-                "standing": entry.standing.word(),
+                "status": entry.standing.word(),
                 "interval": entry.interval().map(|ends| ends.map(|end| end.map(finite))),
             })
         })

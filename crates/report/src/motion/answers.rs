@@ -43,7 +43,7 @@ pub(super) fn end_name(end: &UpdateEnd) -> String {
         UpdateEnd::DoesNotFit => "converged, but does not fit".to_owned(),
         UpdateEnd::StepsSpent => "all steps spent".to_owned(),
         UpdateEnd::Stuck => "no step lowers the error".to_owned(),
-        UpdateEnd::Blind { .. } => "cannot see".to_owned(),
+        UpdateEnd::Blind { .. } => "not observable".to_owned(),
         UpdateEnd::Lost(lost) => format!("lost: {lost}"),
     }
 }
@@ -135,17 +135,17 @@ pub(super) fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
     let mut found = json!({
         "from": update.from,
         "to": update.to,
-        "standing": end_name(&update.end),
+        "status": end_name(&update.end),
         "iterations": update.steps,
         "troubled": update.troubled,
         "seconds": update.seconds,
         "condition": finite(update.condition),
         "cost": finite(update.cost),
-        "misfit": finite(update.misfit),
+        "residual": finite(update.misfit),
         "states": states(observed, update.from, &update.estimate, Some(&update.deviations)),
     });
     if let UpdateEnd::Blind { weakest } = &update.end {
-        found["unseen"] = json!(weakest);
+        found["unobservable"] = json!(weakest);
         found["held"] = json!(true);
     }
     if let Some(fit) = &update.fit {
@@ -231,7 +231,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
         let mut found = json!({
             "method": answer.method.name(),
             "seconds": answer.seconds,
-            "unseen_samples": answer.track.unseen,
+            "unobserved_samples": answer.track.unseen,
             "remarks": answer.track.remarks,
             "together": together_json(answer.track.together()),
             "innovations": innovations_json(answer.track.innovations),
@@ -254,9 +254,9 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
         "duration": times.last(),
         "sensor": sensor_json(experiment),
         "first_guess": if experiment.scene.observer.guess == Guess::None { Value::Null } else { json!(guess) },
-        "begins_at": guess,
+        "initial_guess": guess,
         "clamped": experiment.question.clamped,
-        "told": experiment.question.known,
+        "given": experiment.question.known,
         "faults": fault_lines(&experiment.faults),
         "observers": answers.collect::<Vec<_>>(),
         "interrupted": observed.interrupted,
@@ -276,7 +276,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
             json!({ "column": own.column, "measured": own.measured, "interpolated": is_filled })
         };
         found["sparse"] = json!(experiment.sparse.iter().map(column).collect::<Vec<_>>());
-        found["rows_left_out"] = json!({ "beginning": experiment.outside[0], "end": experiment.outside[1] });
+        found["rows_left_out"] = json!({ "start": experiment.outside[0], "end": experiment.outside[1] });
     }
     if let Some(simulation) = &experiment.simulation {
         found["simulation"] = json!({

@@ -51,7 +51,7 @@ fn rank_json(rank: &ComputedRank, unknowns: &[&str]) -> Value {
     let told = unknowns.iter().zip(&rank.told).filter(|(_, told)| **told);
     json!({
         "rank": rank.rank,
-        "told": told.map(|(name, _)| *name).collect::<Vec<_>>(),
+        "estimated": told.map(|(name, _)| *name).collect::<Vec<_>>(),
         "singular_values": rank.singular_values.iter().map(|value| finite(*value)).collect::<Vec<_>>(),
     })
 }
@@ -68,7 +68,7 @@ pub(super) fn closure_json(closure: &Closure) -> Value {
         })
     });
     json!({
-        "standing": "computed",
+        "status": "computed",
         "from": closure.from,
         "samples": closure.samples[0],
         "samples_of": closure.samples[1],

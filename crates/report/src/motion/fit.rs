@@ -12,7 +12,7 @@ pub(super) fn finite(value: f64) -> Value {
 pub(super) fn noise_from(from: NoiseFrom) -> &'static str {
     match from {
         NoiseFrom::Stated => "stated",
-        NoiseFrom::Misfit => "misfit",
+        NoiseFrom::Misfit => "residual",
         NoiseFrom::Computation => "computation",
     }
 }

@@ -45,8 +45,8 @@ fn update_json(estimate: &ModeEstimate) -> Value {
     json!({
         "name": estimate.name,
         "fits": estimate.fits(),
-        "standing": end_name(&update.end),
-        "misfit": finite(update.misfit),
+        "status": end_name(&update.end),
+        "residual": finite(update.misfit),
         "chi_square": update.fit.map(|fit| finite(fit.chi_square)),
         "degrees_of_freedom": update.fit.map(|fit| fit.degrees),
         "states": states,

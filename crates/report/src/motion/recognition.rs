@@ -71,7 +71,7 @@ pub(super) fn recognition_json(found: &Recognition) -> Value {
             "chi_square": body.fit.map(|fit| finite(fit.chi_square)),
             "degrees_of_freedom": body.fit.map(|fit| fit.degrees),
             "probability": body.fit.map(|fit| finite(fit.probability)),
-            "misfit": finite(body.misfit),
+            "residual": finite(body.misfit),
             "orientation": measured_json(body.orientation),
             "rate": measured_json(body.rate),
         })

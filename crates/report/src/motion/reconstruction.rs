@@ -279,7 +279,7 @@ pub(super) fn shape_json(experiment: &Experiment, answers: &[Answer]) -> Option<
     }
     if let Some(Contradiction { time, name, by_window, of_all }) = &found.contradiction {
         json["contradiction"] = json!({
-            "time": finite(*time), "state": name, "window": measured(*by_window), "all_readings": measured(*of_all),
+            "time": finite(*time), "state": name, "window": measured(*by_window), "all_measurements": measured(*of_all),
         });
     }
     if let Some(TooWide { band, mean }) = &found.too_wide {
@@ -316,7 +316,7 @@ pub(super) fn shape_json(experiment: &Experiment, answers: &[Answer]) -> Option<
     json["degrees_of_freedom"] = json!(shape.degrees);
     json["widened"] = finite(shape.widened);
     if let Some(whole) = &found.whole {
-        json["misfit"] = finite(whole.misfit);
+        json["residual"] = finite(whole.misfit);
         json["noise"] = finite(whole.sigma);
         json["noise_is_stated"] = json!(whole.stated);
         if let Some(gyration) = whole.gyration {

@@ -196,7 +196,7 @@ pub fn findings_json(found: &Findings) -> Value {
             "year": paper.year,
             "source": paper.source,
         },
-        "words": words,
+        "counts": words,
         "errata": found.outcomes().filter(|o| o.word() == "erratum").map(|o| &o.id).collect::<Vec<_>>(),
         "independent_errata": errors(&paper.numbering, found.outcomes(), Flaw::Erratum)
             .independent.iter().map(|o| &o.id).collect::<Vec<_>>(),

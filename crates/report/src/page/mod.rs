@@ -6,6 +6,7 @@ mod drops;
 mod entry;
 pub(super) mod extremes;
 pub(super) mod findings;
+mod inline;
 mod motions;
 mod regime;
 mod source;

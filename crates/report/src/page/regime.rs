@@ -2,10 +2,11 @@
 
 use super::entry::{explain, formula};
 use super::findings::ranks_in_words;
+use super::inline::in_line;
 use super::motions::unseen_motions;
 use super::system::system_mathematics;
 use super::unknowns::unknowns;
-use crate::formula::{conditions_mathml, formula_mathml_in};
+use crate::formula::conditions_mathml;
 use crate::plot;
 use crate::ranks::{deviation_text, taken_for_granted};
 use crate::structure::{NodeVerdict, structure_picture};
@@ -146,11 +147,6 @@ fn lines(lines: &[LineFound], units: Units<'_>) -> Markup {
             }
         }
     }
-}
-
-/// A name or an expression as mathematics; as it is written where it is none.
-pub(super) fn in_line(text: &str, looks: &Looks) -> Markup {
-    formula_mathml_in(text, looks).map_or_else(|| html! { (text) }, PreEscaped)
 }
 
 /// Conditions as mathematics; as they are written where they are none.

@@ -1,6 +1,6 @@
 //! What is seen at almost all states, on the page: a sentence, and a table of the unknowns.
 
-use super::regime::in_line;
+use super::inline::in_line;
 use crate::ranks::generic::{generic_sentence, unknown_verdict};
 use maud::{Markup, html};
 use palmistry_lang::Looks;

@@ -131,7 +131,7 @@ pub fn conjecture_json(findings: &[ConjectureFinding], question: &ConjectureQues
             .map(|(number, plan)| {
                 json!({
                     "number": number, "length": plan.length.as_ref().ok(), "why": plan.length.as_ref().err().map(ToString::to_string),
-                    "reading": plan.reading, "round_reading": plan.round_reading,
+                    "measurement": plan.reading, "rounded_measurement": plan.round_reading,
                     "coverage": plan.rounds.map(|round| round.0), "jumps": plan.rounds.map(|round| round.1),
                 })
             })

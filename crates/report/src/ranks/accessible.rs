@@ -22,7 +22,7 @@ fn bounds_json(bounds: &RankBounds) -> Value {
 fn branch_json(branch: &AccessibilityBranch) -> Value {
     let mut sampled = branch.sampled.as_ref().map_or(Value::Null, sweep_json);
     if let Some(fields) = sampled.as_object_mut()
-        && let Some(unseen) = fields.remove("unseen")
+        && let Some(unseen) = fields.remove("unobservable")
     {
         fields.insert("unmoved".to_owned(), unseen);
     }

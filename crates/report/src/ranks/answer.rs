@@ -54,7 +54,7 @@ fn digits_json(found: &Result<Digits, NoDigits>) -> Value {
             "condition": found.condition,
             "verdict": certainty_text(found.certainty),
             "numbers": found.rung.name(),
-            "climbed": found.climbed,
+            "escalated": found.climbed,
         }),
         Err(why) => json!({ "missing": why.to_string() }),
     }
@@ -79,14 +79,14 @@ pub(super) fn sweep_json(report: &SweepReport) -> Value {
         "rank_histogram": histogram_json(&report.rank_histogram),
         "certified": report.certified,
         "decided_by": rungs_json(report),
-        "climbed": report.climbed(),
+        "escalated": report.climbed(),
         "singular_values_of": [report.remaining.0, report.remaining.1],
         "computed_rank_histogram": histogram_json(&report.computed_histogram),
         "computed_differs_from_certified": report.disagreements,
         "not_computed": report.samples - report.computed_histogram.values().sum::<u64>(),
         "smallest_gap": finite(report.smallest_gap),
         "worst_conditioned": worst,
-        "unseen": report.unseen.iter().map(|direction| json!({
+        "unobservable": report.unseen.iter().map(|direction| json!({
             "states": direction.states,
             "count": direction.count,
             "example": direction.example,
@@ -127,13 +127,13 @@ fn branch_json(branch: &BranchAnswer) -> Value {
     object["conditions"] = json!(branch.conditions);
     object["held_at_the_files_values"] = values_json(&branch.held);
     object["drawn_by_default"] = ranges_json(&branch.by_default);
-    object["words"] = json!(branch.words);
+    object["lie_derivatives"] = json!(branch.words);
     object["order"] = json!(branch.order);
     object["stopped_because"] = json!(stop_text(branch.stop));
     object["generic_rank"] = json!(branch.generic_rank);
-    object["longer_words_cannot_raise_it"] = json!(branch.is_final);
+    object["higher_derivatives_cannot_raise_it"] = json!(branch.is_final);
     add_generic_json(&branch.generic, &branch.unknowns, &mut object);
-    object["unseen_fields"] = branch.motions.as_ref().map_or(Value::Null, motions_json);
+    object["unobservable_directions"] = branch.motions.as_ref().map_or(Value::Null, motions_json);
     object["standard_deviations"] = branch.deviations.as_ref().map_or(Value::Null, deviations_json);
     object["own_rows"] = branch.rows.as_ref().map_or(Value::Null, sweep_json);
     object

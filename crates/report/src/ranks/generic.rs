@@ -40,7 +40,7 @@ pub(super) fn add_generic_json(generic: &GenericAnswer, unknowns: &Unknowns, obj
     let unknown = |((name, kind), (_, seen)): (&(String, UnknownKind), &(_, Seen))| json!({ "name": name, "kind": kind.name(), "verdict": unknown_verdict(*kind, *seen) });
     let unknowns = unknowns.iter().zip(&generic.unknowns).map(unknown);
     object["unknowns"] = unknowns.collect();
-    object["degrees_of_freedom_left"] = json!(generic.rank().map(|rank| generic.dimension - rank));
+    object["unobservable_dimension"] = json!(generic.rank().map(|rank| generic.dimension - rank));
 }
 
 /// How the answer is known, in brackets.

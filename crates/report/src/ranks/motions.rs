@@ -102,7 +102,7 @@ pub(super) fn motions_json(found: &UnseenMotions) -> Value {
             "error_bound": error_bound(field.log2_error),
         })).collect::<Vec<_>>(),
         "fields_missing": found.fields_missing,
-        "seen": found.seen_names,
+        "observable": found.seen_names,
         "functions": found.functions.iter().map(|function| json!({
             "text": function.text,
             "error_bound": error_bound(function.log2_error),

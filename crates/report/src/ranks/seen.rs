@@ -131,7 +131,7 @@ pub(super) fn deviations_json(found: &StandardDeviations) -> Value {
             "spread": row.spread,
             "median": finite(row.median),
             "worst": finite(row.worst),
-            "not_seen_at": if row.is_seen { 0 } else { row.infinite },
+            "unobservable_at": if row.is_seen { 0 } else { row.infinite },
             "unknown_at": if row.is_seen { row.infinite } else { 0 },
             "nearly_invisible": row.median.is_finite() && row.median >= NEARLY_INVISIBLE,
         })).collect::<Vec<_>>(),

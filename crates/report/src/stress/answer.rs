@@ -41,12 +41,12 @@ fn line_json(line: &Line) -> Value {
             json!({
                 "first_wrong": first_json(&found.wrong),
                 "first_lost_half_its_digits": first_json(&found.lost),
-                "first_cannot_tell": first_json(&found.open),
+                "first_undecided": first_json(&found.open),
                 "first_refused": first_json(&found.refused),
                 "on_the_set": {
                     "right": found.on_the_set.right,
                     "wrong": found.on_the_set.wrong,
-                    "cannot_tell": found.on_the_set.open,
+                    "undecided": found.on_the_set.open,
                     "refused": found.on_the_set.refused,
                 },
                 "marks": found.marks.iter().map(|mark| mark.map(|m| m.name())).collect::<Vec<_>>(),
@@ -80,7 +80,7 @@ fn units_json(row: &UnitsRow) -> Value {
             let found = row.ways[way.place()];
             json!({
                 "wrong": found.wrong,
-                "cannot_tell": found.open,
+                "undecided": found.open,
                 "refused": found.refused,
                 "changed": found.changed,
             })

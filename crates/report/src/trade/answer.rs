@@ -69,7 +69,7 @@ pub fn trade_json(trade: &Trade) -> Value {
         "fields": fields_json(&trade.fields),
         "drawn_by_default": ranges_json(&trade.by_default),
         "rows_from": trade.rows,
-        "words": trade.words,
+        "lie_derivatives": trade.words,
         "rows": trade.size.0,
         "columns": trade.size.1,
         "varying_entries": trade.varying,
