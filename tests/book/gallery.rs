@@ -3,7 +3,7 @@
 
 use palmistry::observability::Seen;
 use palmistry::paper::Paper;
-use palmistry::report::{NodeVerdict, structure_picture};
+use palmistry::report::{DiagramGround, NodeVerdict, structure_picture};
 use palmistry::sweep::BranchAnswer;
 use palmistry::{RankQuestion, System, answer_rank};
 use std::fmt::Write;
@@ -53,7 +53,7 @@ impl Gallery {
                 _ => NodeVerdict::Open,
             }
         };
-        match structure_picture(system, &verdict) {
+        match structure_picture(system, &verdict, DiagramGround::Alone) {
             Some(picture) => {
                 let file = format!("{name}.svg");
                 let _ = writeln!(self.page, "![Diagram of {name}](pictures/gallery/{file})\n");

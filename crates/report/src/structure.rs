@@ -20,14 +20,23 @@ pub enum NodeVerdict {
 }
 
 impl NodeVerdict {
-    /// Light enough for dark letters, dark enough for a white page.
+    /// A tint of it is behind the letters, which have the colour of those around the picture.
     fn colour(self) -> &'static str {
         match self {
-            NodeVerdict::Observable => "#b5dfbd",
-            NodeVerdict::Unobservable => "#f3b3b9",
-            NodeVerdict::Open => "#d5d9e0",
+            NodeVerdict::Observable => "#2f9e44",
+            NodeVerdict::Unobservable => "#d6293e",
+            NodeVerdict::Open => "#8a93a0",
         }
     }
+}
+
+/// Where a diagram is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DiagramGround {
+    /// On a page, whose ink and paper it has.
+    Page,
+    /// As a file of its own, on white.
+    Alone,
 }
 
 /// With more nodes nothing can be made out.
@@ -43,7 +52,11 @@ struct Node {
 }
 
 /// The diagram as SVG. None where there are no states that move, or too many of them.
-pub fn structure_picture(system: &System, verdict: &dyn Fn(&str) -> NodeVerdict) -> Option<String> {
+pub fn structure_picture(
+    system: &System,
+    verdict: &dyn Fn(&str) -> NodeVerdict,
+    ground: DiagramGround,
+) -> Option<String> {
     let of_first = |symbol: &Symbol| !system.symbol_name(*symbol).contains(['@', '\'']);
     let moving: BTreeSet<Symbol> = rates(system).map(|(symbol, _)| symbol).collect();
     let signals: BTreeSet<Symbol> =
@@ -78,9 +91,13 @@ pub fn structure_picture(system: &System, verdict: &dyn Fn(&str) -> NodeVerdict)
         .collect();
     let mut out = format!(
         "<svg class=\"structure\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {size:.0} {size:.0}\" width=\"{size:.0}\" \
-         height=\"{size:.0}\" font-family=\"system-ui,sans-serif\" text-anchor=\"middle\">",
-        escaped(&format!("which states of {} stand in whose rates, and what is measured", system.title))
+         height=\"{size:.0}\" font-family=\"system-ui,sans-serif\" text-anchor=\"middle\"{}>",
+        escaped(&format!("which states of {} stand in whose rates, and what is measured", system.title)),
+        if ground == DiagramGround::Alone { " color=\"#1f2430\"" } else { "" }
     );
+    if ground == DiagramGround::Alone {
+        let _ = write!(out, "<rect width=\"{size:.0}\" height=\"{size:.0}\" rx=\"8\" fill=\"#fff\"/>");
+    }
     let mut lines = String::new();
     let mut heads = String::new();
     for (from, to) in &arrows {
@@ -92,7 +109,7 @@ pub fn structure_picture(system: &System, verdict: &dyn Fn(&str) -> NodeVerdict)
     );
     for (node, (x, y)) in nodes.iter().zip(&at) {
         let name = system.symbol_name(node.symbol);
-        let fill = if node.is_signal { "#d8cdea" } else { verdict(name).colour() };
+        let fill = if node.is_signal { "#7c5cbf" } else { verdict(name).colour() };
         if measured.contains(&node.symbol) {
             let outer = RADIUS + 4.0;
             let _ = write!(
@@ -105,12 +122,15 @@ pub fn structure_picture(system: &System, verdict: &dyn Fn(&str) -> NodeVerdict)
                 let side = 1.7 * RADIUS;
                 write!(
                     out,
-                    "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{side:.1}\" height=\"{side:.1}\" fill=\"{fill}\"/>",
+                    "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{side:.1}\" height=\"{side:.1}\" fill=\"{fill}\" fill-opacity=\".22\" stroke=\"{fill}\"/>",
                     x - side / 2.0,
                     y - side / 2.0
                 )
             }
-            false => write!(out, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{RADIUS}\" fill=\"{fill}\"/>"),
+            false => write!(
+                out,
+                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{RADIUS}\" fill=\"{fill}\" fill-opacity=\".22\" stroke=\"{fill}\"/>"
+            ),
         };
         let letters = in_letters(name);
         let short: String = match letters.chars().count() {
@@ -120,7 +140,7 @@ pub fn structure_picture(system: &System, verdict: &dyn Fn(&str) -> NodeVerdict)
         let font = (58.0 / short.chars().count().max(1) as f64).clamp(6.5, 14.0);
         let _ = write!(
             out,
-            "<text x=\"{x:.1}\" y=\"{:.1}\" font-size=\"{font:.1}\" fill=\"#1f2430\">{}<title>{}</title></text>",
+            "<text x=\"{x:.1}\" y=\"{:.1}\" font-size=\"{font:.1}\" fill=\"currentColor\">{}<title>{}</title></text>",
             y + 0.35 * font,
             escaped(&short),
             escaped(name)
@@ -210,23 +230,27 @@ mod tests {
     fn a_chain_has_its_arrows() {
         let system: System =
             "system \"<chain>\" state x, y known u(t) drift f x' = y y' = u - x*0 output x".parse().unwrap();
-        let picture = structure_picture(&system, &|name| match name {
-            "x" => NodeVerdict::Observable,
-            _ => NodeVerdict::Unobservable,
-        })
+        let picture = structure_picture(
+            &system,
+            &|name| match name {
+                "x" => NodeVerdict::Observable,
+                _ => NodeVerdict::Unobservable,
+            },
+            DiagramGround::Page,
+        )
         .unwrap();
         assert_eq!(picture.matches("r=\"17\"").count(), 2, "{picture}");
         assert_eq!(picture.matches("stroke-width=\"2.5\"").count(), 1);
         assert_eq!(picture.matches("<rect").count(), 1);
         assert_eq!(picture.matches('Q').count(), 2);
         assert!(
-            picture.contains("#f3b3b9") && picture.contains("#b5dfbd") && picture.contains("&lt;chain&gt;")
+            picture.contains("#d6293e") && picture.contains("#2f9e44") && picture.contains("&lt;chain&gt;")
         );
     }
 
     #[test]
     fn one_state_has_no_diagram() {
         let system: System = "system \"one\" state x drift f x' = -x output x".parse().unwrap();
-        assert_eq!(structure_picture(&system, &|_| NodeVerdict::Open), None);
+        assert_eq!(structure_picture(&system, &|_| NodeVerdict::Open, DiagramGround::Page), None);
     }
 }

@@ -61,7 +61,7 @@ fn words_that_may_be_names_are_told_by_what_follows() {
     let text = "system \"s\"\nuse o = \"other.proof\"\nstate a, b\n\
                 param k = 2 unknown, l known, m : 1/time unknown\nknown u(t)\nunknown w(t) order 2\ndrift f\n  a' = b\n  others' = 0\n\
                 claim 1 restates 3 in \"other.proof\": a = a\nclaim 2 consequence: a = a\nclaim 4 example: a = a\n\
-                claim 5 expect refuted: a = 1\nclaim 6 expect proved: a = a\nerratum 7: printed \"a\" as a = 1 corrected a = a\n\
+                claim 5 expect refuted: a = 1\nclaim 6 expect proved: a = a\nerratum 7: printed \"a\" as a = 1 corrected a = a \"b\" conclusion \"none\"\n\
                 convention 8 follows 7: printed a = 1 meant a = a\ndamaged 9: reads a = 1 repaired a = a\n\
                 claim 10: a at {a = 2} = 2.0 carrying 2 digits\nclaim 11: a^2 >= 0 on sample\n\
                 claim 12: rank = 2 except where a = 0, b = 0 or b = 1\nclaim 13: rank = 2 everywhere\nset \"x\": a = 0\npole \"y\": a = 1\n\

@@ -218,7 +218,7 @@ fn filters(seen: &Value, place: &str) {
         .map(|one| (one[0].as_str().unwrap(), one[1].as_u64().unwrap()))
         .collect();
     assert_eq!(tally.values().sum::<u64>(), 12, "{place}");
-    let words = seen["lie_derivatives"].as_array().unwrap();
+    let words = seen["words"].as_array().unwrap();
     assert_eq!(words.len(), tally.len(), "{place}");
     for word in words {
         let (name, count) = (word[0].as_str().unwrap(), word[1].as_u64().unwrap());

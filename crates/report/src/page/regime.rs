@@ -9,7 +9,7 @@ use super::unknowns::unknowns;
 use crate::formula::conditions_mathml;
 use crate::plot;
 use crate::ranks::{deviation_text, taken_for_granted};
-use crate::structure::{NodeVerdict, structure_picture};
+use crate::structure::{DiagramGround, NodeVerdict, structure_picture};
 use maud::{Markup, PreEscaped, html};
 use palmistry_lang::Looks;
 use palmistry_prove::claim::Outcome;
@@ -75,7 +75,7 @@ fn structure(file: &FileFindings) -> Markup {
         }
     };
     html! {
-        @if let Some(picture) = structure_picture(&file.system, &verdict) {
+        @if let Some(picture) = structure_picture(&file.system, &verdict, DiagramGround::Page) {
             figure {
                 (PreEscaped(picture))
                 figcaption {
