@@ -4,7 +4,9 @@
 //!
 //! Without noise a scene arrives that fits and is right to 1e-5, with noise one that fits and is within five deviations. One that is told to fit, and not, is silent: of those there should be none.
 
-use palmistry::experiment::space::{SpaceReadings, SpaceSensor, drawn_scenes, relative_error, true_entries};
+use palmistry::experiment::space::{
+    SpaceMeasurements, SpaceSensor, drawn_scenes, relative_error, true_entries,
+};
 use std::time::Instant;
 
 /// Where few samples follow on each other, the rule of integration leaves errors of some millionths in what is nearly blind.
@@ -20,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let sensor = SpaceSensor { noise, ..SpaceSensor::default() };
     let [mut arrived, mut exact, mut lost, mut unfit, mut blind, mut ambiguous, mut silent] = [0; 7];
     for (place, (scene, moments)) in drawn_scenes(seed, count, samples, 1.76).iter().enumerate() {
-        let readings = SpaceReadings::of(moments, &sensor, 1).solid(&scene.palms, scene.gravity, &sensor);
+        let readings = SpaceMeasurements::of(moments, &sensor, 1).solid(&scene.palms, scene.gravity, &sensor);
         let begin = Instant::now();
         let found = readings.first_state();
         let seconds = begin.elapsed().as_secs_f64();

@@ -1,6 +1,6 @@
 //! The thesis's own search beside ours on figure 5.3's scene, with and without noise of a millimetre: `cargo bench --bench two_stages -- 40 5000`, seeds and draws. It is told rate, inertia and mass.
 
-use palmistry::experiment::solid::{KnownSolid, SolidReadings};
+use palmistry::experiment::solid::{KnownSolid, SolidMeasurements};
 use palmistry::experiment::space::{SpaceExperiment, SpaceScene, SpaceTruth};
 use std::time::Instant;
 
@@ -15,7 +15,12 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// Errors of centre and inertia over mass, by one method and from one seed.
-fn errors(truth: &SpaceTruth, readings: &SolidReadings, draws: Option<usize>, seed: u64) -> Option<[f64; 2]> {
+fn errors(
+    truth: &SpaceTruth,
+    readings: &SolidMeasurements,
+    draws: Option<usize>,
+    seed: u64,
+) -> Option<[f64; 2]> {
     let first = &truth.trajectory.moments[0];
     let turn = first.orientation.matrix();
     let inertia = turn * truth.scene.inertia_over_mass * turn.transpose();

@@ -17,7 +17,7 @@ use palmistry::{RankQuestion, System, answer_rank, certify, prove};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut system: System = "
-        system \"A damped pendulum whose angle is seen\"
+        system \"A damped pendulum whose angle is measured\"
         state  phi, omega                    # rad, rad/s
         param  k = 2                         # 1/s^2
         param  c = 1/10                      # 1/s

@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // the system that the observers believe in; its spring is not known
     let system: System = "
-        system \"A pendulum whose angle is seen\"
+        system \"A pendulum whose angle is measured\"
         state phi, omega, k
         angle phi
         drift f

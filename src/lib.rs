@@ -3,7 +3,7 @@
 //! ```
 //! use palmistry::{RankQuestion, System, answer_rank, prove};
 //! let mut system: System = r#"
-//!     system "A pendulum whose angle is seen"
+//!     system "A pendulum whose angle is measured"
 //!     state phi, omega
 //!     param k = 2
 //!     angle phi

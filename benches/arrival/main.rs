@@ -8,7 +8,7 @@
 
 mod scenes;
 
-use palmistry::experiment::unguided::{FirstState, PalmReadings};
+use palmistry::experiment::unguided::{FirstState, PalmMeasurements};
 use palmistry::experiment::{Experiment, NoiseStudy, Scene, noise_study};
 use palmistry::mechanics::moving::Ended;
 use std::sync::atomic::AtomicBool;
@@ -40,7 +40,7 @@ fn row(noise: f64, count: usize, seed: u64, is_circular: bool) {
         let Some(drawn) = experiment(&text) else { continue };
         held += 1;
         let truth = drawn.truth_at(0.0).expect("a simulation has a truth");
-        let readings = drawn.palm_readings().expect("a drawn scene tells all");
+        let readings = drawn.palm_measurements().expect("a drawn scene tells all");
         let one = || {
             let begin = Instant::now();
             (readings.first_state(), begin.elapsed().as_secs_f64())
@@ -107,7 +107,8 @@ fn by_windows(experiment: &Experiment, truth: &[f64]) -> bool {
 fn at_truth(text: &str, noisy: &Experiment) -> Option<[f64; 3]> {
     let (start, end) = (text.find("[sensor]")?, text.find("[observer]")?);
     let exact = experiment(&format!("{}{}", &text[..start], &text[end..]))?;
-    let readings = PalmReadings { sigma: noisy.palm_readings().ok()?.sigma, ..exact.palm_readings().ok()? };
+    let readings =
+        PalmMeasurements { sigma: noisy.palm_measurements().ok()?.sigma, ..exact.palm_measurements().ok()? };
     let simulation = exact.simulation.as_ref()?;
     let moment = simulation.trajectory.moments[0];
     readings.bound_at(&FirstState {

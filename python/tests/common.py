@@ -10,7 +10,7 @@ PROGRAM = os.environ.get("PALMISTRY", next((path for path in BUILT if os.path.ex
 built = unittest.skipUnless(os.path.exists(PROGRAM), "the program is not built: cargo build --release, or name it in PALMISTRY")
 
 #: Its third claim is refuted.
-PENDULUM = """system "A pendulum whose angle is seen"
+PENDULUM = """system "A pendulum whose angle is measured"
 state phi, omega
 param k = 2
 angle phi

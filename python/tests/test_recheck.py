@@ -51,7 +51,7 @@ STATE = {"phi": {"angle": {"sin": "3/5", "cos": "4/5"}}, "omega": {"number": "2"
 RANKED = {"columns": ["phi", "omega", "x", "m"], "words": ["phi", "Lf phi", "Lf Lf phi"],
           "states": [{"state": STATE, "rank": 2, "minor": {"rows": [0, 1], "columns": [0, 1]}, "kernel": []}]}
 BOX = """
-system "A pendulum whose angle is seen"
+system "A pendulum whose angle is measured"
 state phi : angle, omega
 param k = 2
 angle phi

@@ -1,7 +1,7 @@
 //! The gallery: each model and paper that came with the program, with its diagram and three lines. The page is written by this test
 //! (`PALMISTRY_BOOK=renew`), which otherwise holds it to what the program finds.
 
-use palmistry::observability::Seen;
+use palmistry::observability::Observability;
 use palmistry::paper::Paper;
 use palmistry::report::{DiagramGround, NodeVerdict, structure_picture};
 use palmistry::sweep::BranchAnswer;
@@ -48,8 +48,8 @@ impl Gallery {
         let verdict = |wanted: &str| {
             let all = branch.unknowns.iter().zip(&branch.generic.unknowns);
             match all.filter(|((name, _), _)| name == wanted).map(|(_, (_, seen))| *seen).next() {
-                Some(Seen::Yes) => NodeVerdict::Observable,
-                Some(Seen::No) => NodeVerdict::Unobservable,
+                Some(Observability::Yes) => NodeVerdict::Observable,
+                Some(Observability::No) => NodeVerdict::Unobservable,
                 _ => NodeVerdict::Open,
             }
         };
@@ -65,11 +65,11 @@ impl Gallery {
 
     /// Two lines: how large it is and its rank; what is observable and what is not.
     fn lines(&mut self, system: &System, branch: &BranchAnswer) {
-        let of = |wanted: Seen| -> Vec<String> {
+        let of = |wanted: Observability| -> Vec<String> {
             let all = branch.unknowns.iter().zip(&branch.generic.unknowns);
             all.filter(|(_, (_, seen))| *seen == wanted).map(|((name, _), _)| in_code(name)).collect()
         };
-        let [yes, no, open] = [Seen::Yes, Seen::No, Seen::Undecided].map(of);
+        let [yes, no, open] = [Observability::Yes, Observability::No, Observability::Undecided].map(of);
         let rank = branch.generic.rank().map_or("not known".to_owned(), |rank| rank.to_string());
         let _ = writeln!(
             self.page,

@@ -24,8 +24,8 @@ pub struct Findings {
 pub fn pages() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut found = vec![root.join("README.md")];
-    let folders =
-        ["book/src", "book/src/commands"].map(|name| std::fs::read_dir(root.join(name)).expect("the book"));
+    let folders = ["book/src", "book/src/commands", "book/src/questions"]
+        .map(|name| std::fs::read_dir(root.join(name)).expect("the book"));
     let mut chapters: Vec<PathBuf> =
         folders.into_iter().flatten().map(|entry| entry.expect("an entry").path()).collect();
     chapters.retain(|path| path.extension().is_some_and(|extension| extension == "md"));

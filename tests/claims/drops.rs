@@ -112,7 +112,7 @@ fn angles_include_half_turns() {
     assert_eq!(sets(&plain), ["1: sin(phi) = 0", "1: x = 0"]);
 }
 
-/// A pendulum whose angle is seen has rank 2 everywhere; where its cosine is seen alone, not at rest where it hangs or stands.
+/// A pendulum whose angle is measured has rank 2 everywhere; where its cosine is seen alone, not at rest where it hangs or stands.
 #[test]
 fn a_pendulum() {
     let pendulum = |output: &str| {

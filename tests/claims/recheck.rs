@@ -422,7 +422,7 @@ fn no_damage_makes_it_panic() {
 }
 
 const PENDULUM: &str = r#"
-system "A pendulum whose angle is seen, and a clock that nobody sees"
+system "A pendulum whose angle is measured, and a clock that nobody sees"
 state phi, omega, tau
 angle phi
 param k = 2

@@ -73,7 +73,7 @@ fn task<'a>(system: &System, signals: &'a Signals, errors: [f64; 2]) -> Task<'a>
     let mut task = Task::new(system, &question(), signals, &NEVER).unwrap();
     for (name, size) in [("u", errors[0]), ("w1", errors[1]), ("w2", errors[1])] {
         if size > 0.0 {
-            task.errors.insert(name.to_owned(), ReadingErrors { normal: size, rounding: 0.0 });
+            task.errors.insert(name.to_owned(), MeasurementErrors { normal: size, rounding: 0.0 });
             task.exact = false;
             (task.sigma, task.noise) = (size, Noise::Stated { normal: size, rounding: 0.0 });
         }

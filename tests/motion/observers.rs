@@ -51,7 +51,7 @@ fn question(guess: &[(&str, f64)]) -> EstimateQuestion {
 }
 
 fn window(method: WindowSearch) -> MovingWindow {
-    MovingWindow { method, window: 50, steps: 20, blind: 1.0, when_blind: WhenBlind::Hold }
+    MovingWindow { method, window: 50, steps: 20, blind: 1.0, when_blind: WhenUnobservable::Hold }
 }
 
 #[test]

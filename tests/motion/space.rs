@@ -4,7 +4,7 @@
 
 use crate::common::{folder, json, palmistry, without_times, write};
 use palmistry::experiment::space::{
-    SpaceExperiment, SpaceReadings, SpaceScene, SpaceUpdate, SpaceVerdict, relative_error,
+    SpaceExperiment, SpaceMeasurements, SpaceScene, SpaceUpdate, SpaceVerdict, relative_error,
 };
 use palmistry::shape::sphere::OuterBound;
 use std::f64::consts::PI;
@@ -98,7 +98,7 @@ fn spheres_are_recorded() {
     let folder = folder();
     let file = folder.path().join("run.csv");
     experiment.readings.record().unwrap().write(&file).unwrap();
-    assert_eq!(SpaceReadings::recorded(&experiment.scene, &file).unwrap(), experiment.readings);
+    assert_eq!(SpaceMeasurements::recorded(&experiment.scene, &file).unwrap(), experiment.readings);
     // the forces that torques and levers tell are those of the simulation, but for the noise of levers
     let truth = &experiment.truth.as_ref().unwrap().trajectory.moments;
     let solid = experiment.solid();
@@ -124,7 +124,7 @@ fn a_recording_gives_the_same() {
     let folder = folder();
     let file = folder.path().join("run.csv");
     experiment.readings.record().unwrap().write(&file).unwrap();
-    let again = SpaceReadings::recorded(&experiment.scene, &file).unwrap();
+    let again = SpaceMeasurements::recorded(&experiment.scene, &file).unwrap();
     assert_eq!(again, experiment.readings);
     // of another program, with names of its own and without rates
     let table = std::fs::read_to_string(&file).unwrap();

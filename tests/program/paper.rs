@@ -370,7 +370,7 @@ fn a_new_paper_proves() {
     assert_eq!((&found["ok"], &found["paper"]["title"]), (&true.into(), &"A paper of my own".into()));
     assert_eq!(found["files"][0]["left_out"].as_array().unwrap().len(), 0);
     let page = std::fs::read_to_string(folder.path().join("out/index.html")).unwrap();
-    assert!(page.contains("A pendulum whose angle is seen") && page.contains("no length"));
+    assert!(page.contains("A pendulum whose angle is measured") && page.contains("no length"));
     // what is there stays as it is, and nothing is left beside it
     write(&folder, "a/b/mine.proof", "system \"mine\"");
     for taken in

@@ -104,7 +104,7 @@ fn designs_are_those_of_the_ranks_of_all_files() {
             answer_rank(&mut system, &RankQuestion { samples: 0, ..RankQuestion::default() }).unwrap();
         let generic = answer.branches[0].generic.clone();
         let seen = generic.unknowns.iter().find(|(symbol, _)| system.symbol_name(*symbol) == "p1");
-        seen.is_some_and(|(_, seen)| *seen == palmistry::observability::Seen::Yes)
+        seen.is_some_and(|(_, seen)| *seen == palmistry::observability::Observability::Yes)
     };
     let mut expected: Vec<BTreeSet<usize>> = Vec::new();
     let all = additions.len();

@@ -2,7 +2,7 @@
 //! answers are held to a program that shares nothing with ours by `benches/peers/models.py`.
 
 use palmistry::System;
-use palmistry::observability::{Frame, Seen};
+use palmistry::observability::{Frame, Observability};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
 
@@ -35,11 +35,11 @@ fn published_models_have_their_answers() {
             continue;
         }
         assert!(answer.log2_error < -100.0, "{name}: {answer:?}");
-        let unseen = answer.unknowns.iter().filter(|(_, seen)| *seen == Seen::No);
+        let unseen = answer.unknowns.iter().filter(|(_, seen)| *seen == Observability::No);
         let unseen: BTreeSet<String> =
             unseen.map(|(symbol, _)| system.symbol_name(*symbol).to_owned()).collect();
         assert_eq!(unseen, expected.not_seen, "{name}");
-        assert!(answer.unknowns.iter().all(|(_, seen)| *seen != Seen::Undecided), "{name}");
+        assert!(answer.unknowns.iter().all(|(_, seen)| *seen != Observability::Undecided), "{name}");
     }
     // where functions are met that may satisfy relations, series alone bound the rank from above
     println!("left to true states: {open:?}");

@@ -1,6 +1,6 @@
 //! Ranks at the edges: states that do not exist, numbers that doubles do not hold, states that they cannot tell apart.
 
-use palmistry::observability::Seen;
+use palmistry::observability::Observability;
 use palmistry::report::rank_text;
 use palmistry::sweep::StandardDeviation;
 use palmistry::{RankAnswer, RankQuestion, System, answer_rank};
@@ -73,11 +73,11 @@ fn a_box_wider_than_doubles_has_ranks() {
 /// which the bound is smaller is seen then, and one that is not seen at one of the states is not.
 #[test]
 fn unknowns_are_decided_where_the_states_decide_the_rank() {
-    let seen = |text: &str| -> Vec<Seen> {
+    let seen = |text: &str| -> Vec<Observability> {
         ranks(text).branches[0].generic.unknowns.iter().map(|(_, seen)| *seen).collect()
     };
     let power = "system \"s\" state x, y param n unknown drift f x' = -x^n y' = y^n output x initial x = 1 sample y in [1, 2]";
-    assert_eq!(seen(power), [Seen::No, Seen::Yes]);
+    assert_eq!(seen(power), [Observability::No, Observability::Yes]);
     // without states it is left undecided, and that is said
     let unasked = |text: &str| {
         let mut system: System = text.parse().unwrap();
@@ -90,7 +90,7 @@ fn unknowns_are_decided_where_the_states_decide_the_rank() {
             "system \"s\" state x, y, z drift f x' = 0 y' = 0 z' = 0 output x, (asin(sin(x)) - 2*x)*(y + z) sample x in {range} y in [1, 2]"
         )
     };
-    assert_eq!(seen(&parts("[2, 3]")), [Seen::Yes, Seen::No, Seen::No]);
+    assert_eq!(seen(&parts("[2, 3]")), [Observability::Yes, Observability::No, Observability::No]);
     let split = parts("[-3, 3]").replace("2*x", "x");
-    assert_eq!(seen(&split), [Seen::Undecided; 3]);
+    assert_eq!(seen(&split), [Observability::Undecided; 3]);
 }

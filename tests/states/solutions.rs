@@ -2,7 +2,7 @@
 //! `tests/models/expected.toml`), and the words in which it is told.
 
 use crate::common::{json, palmistry};
-use palmistry::observability::{Seen, Solutions, SolutionsOf, SolutionsQuestion, solutions};
+use palmistry::observability::{Observability, Solutions, SolutionsOf, SolutionsQuestion, solutions};
 use palmistry::sweep::SolutionsWanted;
 use palmistry::{System, answer_solutions};
 use std::collections::BTreeMap;
@@ -98,7 +98,7 @@ fn an_angle_is_a_point_of_the_circle() {
 fn what_is_no_rational_function_is_named() {
     let system = read("state x param k unknown drift f x' = -k*x output exp(x)");
     let found = ask(&system, &[], WORK);
-    assert!(found.iter().all(|of_it| of_it.local == Seen::Yes), "{found:?}");
+    assert!(found.iter().all(|of_it| of_it.local == Observability::Yes), "{found:?}");
     assert!(number(&found[0]).contains("exp(x) is no rational function"), "{found:?}");
     let steps = read("state x param k unknown drift f x+ = k*x output x");
     assert!(number(&ask(&steps, &[], WORK)[0]).contains("steps"));

@@ -9,15 +9,15 @@ use palmistry::System;
 use palmistry::expression::Program;
 use palmistry::number::Floats;
 use palmistry::observability::{
-    Codistribution, Length, NotReparametrised, UnseenMotions, differential_by_duals, reparametrise,
+    Codistribution, Length, NotReparametrised, UnobservableDirections, differential_by_duals, reparametrise,
     unseen_motions,
 };
-use palmistry::report::unseen_field_text;
+use palmistry::report::unobservable_field_text;
 use palmistry::system::Assignment;
 use std::collections::HashMap;
 
 /// What is found of a system, by words and by power series alike.
-fn found(text: &str) -> (System, UnseenMotions) {
+fn found(text: &str) -> (System, UnobservableDirections) {
     let mut system: System = text.parse().expect("a system");
     let nothing = Assignment::new();
     let words = Codistribution::new(&mut system, &nothing, Length::UntilItStops).expect("words");
@@ -29,16 +29,16 @@ fn found(text: &str) -> (System, UnseenMotions) {
     (system, by_words)
 }
 
-fn fields(found: &UnseenMotions) -> Vec<String> {
-    found.fields.iter().map(unseen_field_text).collect()
+fn fields(found: &UnobservableDirections) -> Vec<String> {
+    found.fields.iter().map(unobservable_field_text).collect()
 }
 
-fn functions(found: &UnseenMotions) -> Vec<&str> {
+fn functions(found: &UnobservableDirections) -> Vec<&str> {
     found.functions.iter().map(|function| function.text.as_str()).collect()
 }
 
 /// Along each field no word of up to three fields changes, by another route of differentiation.
-fn no_word_changes(system: &System, found: &UnseenMotions) {
+fn no_word_changes(system: &System, found: &UnobservableDirections) {
     let mut words: Vec<Vec<usize>> = vec![Vec::new()];
     for length in 1..=3 {
         let shorter: Vec<Vec<usize>> =
@@ -70,7 +70,7 @@ fn no_word_changes(system: &System, found: &UnseenMotions) {
                     assert!(
                         change.abs() < 1e-9 * size,
                         "{change} of {size} along {}",
-                        unseen_field_text(field)
+                        unobservable_field_text(field)
                     );
                     checked += 1;
                 }
@@ -81,7 +81,7 @@ fn no_word_changes(system: &System, found: &UnseenMotions) {
 }
 
 /// The system in what is seen has the rank as its dimension, and all its claims are proved.
-fn is_reparametrised(system: &System, text: &str, found: &UnseenMotions) -> String {
+fn is_reparametrised(system: &System, text: &str, found: &UnobservableDirections) -> String {
     let folder = folder();
     write(&folder, "original.proof", text);
     let reduced = reparametrise(system, found, "original.proof").expect("a reparametrisation");

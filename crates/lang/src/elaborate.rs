@@ -252,6 +252,33 @@ impl System {
         }
     }
 
+    /// A function of other languages, and how it is written here.
+    fn function_of_others(&self, name: &str, arguments: &[Expr]) -> Option<String> {
+        let known = |wanted: &str| super::vocabulary::functions().find(|function| *function == wanted);
+        if let Some(own) = name.rsplit_once('.').and_then(|(_, own)| known(own)) {
+            return Some(format!("it is called '{own}' alone"));
+        }
+        if let Some(own) = known(&name.to_lowercase()).filter(|own| *own != name) {
+            return Some(format!("it is written in small letters, '{own}'"));
+        }
+        if let [Expr { kind: ExprKind::Name(time), .. }] = arguments
+            && time == "t"
+            && self.find_symbol("t").is_none()
+        {
+            return Some(format!(
+                "a signal is declared, 'known {name}(t)' or 'unknown {name}(t)', and written {name} where it is used"
+            ));
+        }
+        match name {
+            "pow" | "power" => Some("a power is written with '^', as in x^2".to_owned()),
+            "sqr" | "square" => Some("a square is written x^2, a root sqrt(x)".to_owned()),
+            "heaviside" | "step" | "piecewise" | "ifelse" | "where" | "iif" => Some(
+                "there is no 'if': write max(a, b), min(a, b), abs(a) or sign(a), or a claim for each case with 'where'".to_owned(),
+            ),
+            _ => None,
+        }
+    }
+
     /// What a name means in other languages, and how that is written here.
     fn habit(&self, name: &str, wanted: Wanted) -> Option<String> {
         let is_function = super::vocabulary::functions().any(|function| function == name);
@@ -262,6 +289,11 @@ impl System {
                 "'{name}' has no value: numbers are real, and an index has its range behind 'for'"
             )),
             ("inf" | "Inf" | "oo", Wanted::Name) => Some("it is called 'infinity'".to_owned()),
+            ("t" | "time", Wanted::Name) => Some(
+                "time has no name: what depends on it is a signal, known u(t), or a state with the rate 1"
+                    .to_owned(),
+            ),
+            ("full", Wanted::Name) => Some("full rank is the number of unknowns, as in rank = 3".to_owned()),
             (_, Wanted::Name) if is_function => {
                 Some(format!("a function has its argument in brackets at once, as in {name}(x)^2"))
             }
@@ -379,6 +411,9 @@ impl System {
                     Problem::new(Code::UnknownName, span, format!("unknown function '{name}'"), "here");
                 let other = OTHER_NAMES.into_iter().find(|(other, _)| *other == name);
                 let is_value = self.find_symbol(name).is_some() || self.definitions.contains_key(name);
+                if let Some(help) = self.function_of_others(name, arguments) {
+                    return Err(problem.help(help));
+                }
                 Err(match (other, nearest(name, known)) {
                     (Some((_, own)), _) => problem.help(format!("it is called '{own}'")),
                     (None, _) if is_value => problem.help(format!(

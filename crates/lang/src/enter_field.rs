@@ -39,7 +39,17 @@ impl System {
             let message =
                 format!("the field '{}' does not say how '{}' moves", name.text, self.symbol_name(missing));
             return Err(Problem::new(Code::Field, &name.span, message, "this field")
-                .help("end it with: others' = 0, if the states that it does not name stand still"));
+                .help(match (rates.is_empty(), role) {
+                    (true, Role::Input) => format!(
+                        "an input field has a rate for each state below its name; a signal that drives the system is declared with 'known {}(t)'",
+                        name.text
+                    ),
+                    (true, _) => format!(
+                        "write a rate for each state below its name (and no ':' behind it), as in {}' = ...",
+                        self.symbol_name(missing)
+                    ),
+                    _ => "end it with: others' = 0, if the states that it does not name stand still".to_owned(),
+                }));
         }
         let written = self.written_components(components);
         let written = if others_are_zero { written.followed_by("others' = 0") } else { written };

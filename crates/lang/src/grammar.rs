@@ -418,6 +418,26 @@ pub(super) const ENTRIES: [&str; 30] = [
     "experiments",
 ];
 
+/// Entries by the names that they have elsewhere.
+const OTHER_ENTRIES: [(&str, &str); 16] = [
+    ("const", "param"),
+    ("constant", "param"),
+    ("constants", "param"),
+    ("parameter", "param"),
+    ("parameters", "param"),
+    ("variable", "state"),
+    ("var", "state"),
+    ("dynamics", "drift"),
+    ("ode", "drift"),
+    ("equations", "drift"),
+    ("def", "let"),
+    ("import", "use"),
+    ("include", "use"),
+    ("theorem", "claim"),
+    ("lemma", "claim"),
+    ("measure", "output"),
+];
+
 /// What to say where no entry begins.
 fn no_entry(text: &str, input: &Text<'_>, after_an_entry: bool) -> Expected {
     let mut error = Expected::from_input(input);
@@ -436,9 +456,17 @@ fn no_entry(text: &str, input: &Text<'_>, after_an_entry: bool) -> Expected {
             return error;
         }
         error.what = ENTRY.to_owned();
-        let near = super::error::nearest(&word, ENTRIES)
-            .filter(|near| *near != word)
-            .map(|near| format!("perhaps you meant '{near}'"));
+        let other = OTHER_ENTRIES.into_iter().find(|(other, _)| *other == word).map(|(_, own)| own);
+        let behind = text[error.at..].get(word.len()..).unwrap_or_default().trim_start();
+        let is_equation = !word.is_empty() && behind.starts_with('=') && !behind.starts_with("==");
+        let constant = is_equation.then(|| {
+            format!("a constant is declared, as in param {word} = 2, and an abbreviation as let {word} = ...")
+        });
+        let near = super::error::nearest(&word, ENTRIES).filter(|near| *near != word);
+        let near = other
+            .map(|own| format!("it is called '{own}'"))
+            .or(constant)
+            .or(near.map(|near| format!("perhaps you meant '{near}'")));
         let go_on = || "or an operator, if the expression above goes on here".to_owned();
         error.help = near.or_else(|| after_an_entry.then(go_on));
     }
@@ -455,6 +483,12 @@ pub(crate) fn parse_file(text: &str) -> Result<Vec<Item>, Expected> {
 fn never_closed(at: usize) -> Expected {
     let help = "the text goes on into the next entry, up to the quotation mark with which another one begins";
     Expected { what: "a closing quotation mark for this one".to_owned(), at, help: Some(help.to_owned()) }
+}
+
+/// Whether a text begins with the word of an entry.
+fn is_an_entry(text: &str) -> bool {
+    let word: String = text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+    ENTRIES.contains(&word.as_str())
 }
 
 /// With the entry that may be meant, where a line begins with a word that is almost one and was taken for a state.
@@ -510,6 +544,12 @@ pub(super) fn parse_entries(text: &str, most: usize) -> Entries {
                     items.pop();
                     spans.pop();
                     (before.0, before.1, before.1, never_closed(before.1 + quote))
+                }
+                // a field whose rates break off says nothing of the states that it does not come to
+                _ if matches!(items.last(), Some(Item::Field { .. })) && !is_an_entry(&text[begin..]) => {
+                    items.pop();
+                    spans.pop();
+                    (start, begin, before.1, expected)
                 }
                 _ => (start, begin, if behind { before.1 } else { begin }, expected),
             };

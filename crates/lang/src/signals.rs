@@ -92,7 +92,9 @@ fn signals(input: &mut Text<'_>) -> Read<Item> {
             .parse_next(input)?;
     let one = |input: &mut Text<'_>| -> Read<Vec<DeclaredSignal>> {
         let target = target.context("the name of a signal, as in u(t)").parse_next(input)?;
-        cut_err(sign("(")).context("'(t)' behind the name of a signal").parse_next(input)?;
+        cut_err(sign("("))
+            .context("'(t)' behind the name of a signal, as in known u(t)")
+            .parse_next(input)?;
         let at = input.current_token_start();
         let time = cut_err(name_of_time).parse_next(input)?;
         if time != "t" {

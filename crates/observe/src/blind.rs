@@ -5,7 +5,7 @@
 //! first ones are let go, so that no stream keeps more than that.
 
 use super::inheritance::Anew;
-use super::learned::{Learned, Unseen};
+use super::learned::{Learned, UninformativeWindows};
 use super::task::Task;
 use super::track::{Track, Update};
 use super::{MovingWindow, weights};
@@ -26,11 +26,11 @@ impl MovingWindow {
         &self,
         task: &Task<'_>,
         rows: &Range<usize>,
-        unseen: Option<&'u Unseen>,
+        unseen: Option<&'u UninformativeWindows>,
         learned: &Learned,
         anew: &Anew<'_>,
         track: &mut Track,
-    ) -> Option<(&'u Unseen, Update, Vec<Update>)> {
+    ) -> Option<(&'u UninformativeWindows, Update, Vec<Update>)> {
         let unseen = unseen?;
         let all = rows.start - unseen.rows..rows.end;
         let before = Learned { is_asked: learned.is_asked, ..unseen.before.clone() };
@@ -54,16 +54,17 @@ impl MovingWindow {
     pub(super) fn unseen_after(
         &self,
         rows: &Range<usize>,
-        unseen: Option<&Unseen>,
+        unseen: Option<&UninformativeWindows>,
         learned: &Learned,
         update: &Update,
         track: &mut Track,
-    ) -> Option<Arc<Unseen>> {
+    ) -> Option<Arc<UninformativeWindows>> {
         let own = rows.len() - 1;
-        let alone = || Unseen { rows: own, before: Learned { unseen: None, ..learned.clone() } };
+        let alone =
+            || UninformativeWindows { rows: own, before: Learned { unseen: None, ..learned.clone() } };
         let next = match unseen {
             Some(unseen) if unseen.rows + 2 * own <= MOST * self.window.max(2) => {
-                Unseen { rows: unseen.rows + own, before: unseen.before.clone() }
+                UninformativeWindows { rows: unseen.rows + own, before: unseen.before.clone() }
             }
             Some(_) => {
                 track.remarks.push(format!(

@@ -31,14 +31,14 @@ pub enum Noise {
 
 /// What is known of the errors of the readings of a column: independent normal ones, and rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ReadingErrors {
+pub struct MeasurementErrors {
     /// The standard deviation, in the column's unit.
     pub normal: f64,
     /// Readings are multiples of this; zero for none.
     pub rounding: f64,
 }
 
-impl ReadingErrors {
+impl MeasurementErrors {
     /// The variance of a reading.
     pub fn variance(self) -> f64 {
         self.normal * self.normal + self.rounding * self.rounding / 12.0

@@ -36,7 +36,7 @@ pub struct Learned {
     /// The state of a filter, and its covariance or a factor of it.
     pub(super) filter: Option<(DVector<f64>, DMatrix<f64>)>,
     /// The samples before that told too little.
-    pub(super) unseen: Option<Arc<Unseen>>,
+    pub(super) unseen: Option<Arc<UninformativeWindows>>,
     /// Where the last window ended, and how well that is known.
     pub(super) spread: Option<Arc<Spread>>,
 }
@@ -58,7 +58,7 @@ pub struct Spread {
 
 /// Windows that told too little of the state: the next one takes their samples as well.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Unseen {
+pub struct UninformativeWindows {
     /// How many samples back the first of them begins.
     pub(super) rows: usize,
     /// What was known there.

@@ -73,7 +73,7 @@ pub use chi_square::exceeded_with;
 pub use drift::Drift;
 #[doc(hidden)]
 pub use fit::explains;
-pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom, ReadingErrors};
+pub use fit::{FALSE_ALARMS, Fit, MeasurementErrors, Noise, NoiseFrom};
 pub use flow::Lost;
 #[doc(hidden)]
 pub use flow::{ModelFlow, Order, Sample, Stride, advance};
@@ -81,18 +81,18 @@ pub use high_gain::HighGain;
 pub use integration::Integration;
 pub use interpolation::Interpolation;
 pub use kalman::Kalman;
-pub use learned::{Arrival, Learned, Spread, Unseen};
+pub use learned::{Arrival, Learned, Spread, UninformativeWindows};
 pub use loss::Loss;
 pub use model::{Model, ModelError};
 #[doc(hidden)]
 pub use model::{ModelQuestion, parameter_values, total_rates};
-pub use moving_window::{MovingWindow, WhenBlind, WindowSearch};
+pub use moving_window::{MovingWindow, WhenUnobservable, WindowSearch};
 pub use multiple_shooting::{MultipleShooting, Shooting};
 pub use newton::Newton;
 pub use objection::{MotionRankFound, Objection, PoleMet};
 pub use record::{
-    ColumnNames, ColumnSource, EmptyCells, Fault, FaultKind, FaultRules, OnFault, Record, RecordError,
-    RecordReading, SparseColumn,
+    ColumnNames, ColumnSource, EmptyCells, Fault, FaultKind, FaultRules, OnFault, ReadRecord, Record,
+    RecordError, SparseColumn,
 };
 #[doc(hidden)]
 pub use record::{RecordRows, RowStream, STREAM, TIME, faults_of};

@@ -26,7 +26,7 @@ pub enum WindowSearch {
 /// What an observer does while it cannot see.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum WhenBlind {
+pub enum WhenUnobservable {
     /// `integrate`: the equations, with the outputs as they are read.
     #[default]
     Integrate,
@@ -49,14 +49,14 @@ pub struct MovingWindow {
     /// The relative standard deviation, by the bound of Cramér and Rao, from which on something counts as not seen.
     pub blind: f64,
     /// What is done where nothing is seen.
-    pub when_blind: WhenBlind,
+    pub when_blind: WhenUnobservable,
 }
 
 impl MovingWindow {
     /// Windows of so many samples, five steps each by a region of trust; what is known no better than its own size counts as
     /// not seen, and is integrated.
     pub fn new(window: usize) -> MovingWindow {
-        let when_blind = WhenBlind::default();
+        let when_blind = WhenUnobservable::default();
         MovingWindow { method: WindowSearch::TrustRegion, window, steps: 5, blind: 1.0, when_blind }
     }
 }
@@ -306,8 +306,8 @@ impl MovingWindow {
         track.unseen += rows.len() - 1;
         let held = || vec![belief.to_vec(); rows.len()];
         let states = match self.when_blind {
-            WhenBlind::Hold => held(),
-            WhenBlind::Integrate => task.integrate(belief, rows.clone()).unwrap_or_else(|lost| {
+            WhenUnobservable::Hold => held(),
+            WhenUnobservable::Integrate => task.integrate(belief, rows.clone()).unwrap_or_else(|lost| {
                 track.remarks.push(format!("could not be integrated either, and was held: {lost}"));
                 held()
             }),

@@ -6,7 +6,7 @@ use super::learned::{Arrival, Learned};
 use super::loss::Loss;
 use super::track::Track;
 use super::{
-    CalibrationKind, Lost, Model, ModelError, ModelFlow, ModelQuestion, Order, ReadingErrors, Signals,
+    CalibrationKind, Lost, MeasurementErrors, Model, ModelError, ModelFlow, ModelQuestion, Order, Signals,
 };
 use palmistry_lang::System;
 use std::collections::BTreeMap;
@@ -35,7 +35,7 @@ pub struct Task<'a> {
     pub noise: Noise,
     /// What is known of the errors of single columns, by name: of an output in the place of `noise`, of a column that drives the model
     /// beside it. A column that is not there drives the model without error.
-    pub errors: BTreeMap<String, ReadingErrors>,
+    pub errors: BTreeMap<String, MeasurementErrors>,
     /// What the rounding of the samples' times may add to a reading, in the outputs' unit.
     pub timing: f64,
     /// Whether the readings are taken as they are for the first values of the outputs, because they have no error.
@@ -182,10 +182,10 @@ impl<'a> Task<'a> {
     }
 
     /// The errors of an output of which nothing else is known.
-    pub(super) fn common_errors(&self) -> ReadingErrors {
+    pub(super) fn common_errors(&self) -> MeasurementErrors {
         match self.noise {
-            Noise::Stated { normal, rounding } => ReadingErrors { normal, rounding },
-            Noise::Unstated => ReadingErrors { normal: self.sigma, rounding: 0.0 },
+            Noise::Stated { normal, rounding } => MeasurementErrors { normal, rounding },
+            Noise::Unstated => MeasurementErrors { normal: self.sigma, rounding: 0.0 },
         }
     }
 
@@ -243,9 +243,9 @@ impl<'a> Task<'a> {
     }
 
     /// What is believed of the errors of an output: one that is zero has none of its own, but those of the readings in it.
-    pub(super) fn output_errors(&self, output: usize) -> ReadingErrors {
+    pub(super) fn output_errors(&self, output: usize) -> MeasurementErrors {
         if self.full.is_implicit(output) {
-            return ReadingErrors::default();
+            return MeasurementErrors::default();
         }
         self.errors.get(&self.full.outputs[output]).copied().unwrap_or_else(|| self.common_errors())
     }

@@ -12,7 +12,7 @@
 
 use super::chi_square::exceeded;
 use super::drift::{Drift, Trend, slow_curves};
-use super::fit::{Fit, Noise, NoiseFrom, ReadingErrors, least_of};
+use super::fit::{Fit, MeasurementErrors, Noise, NoiseFrom, least_of};
 use super::loss::Loss;
 use super::sensitivity::Sensitivity;
 use super::task::Task;
@@ -42,7 +42,7 @@ pub(super) struct Weights {
     /// The errors of each column of the sensitivities; neighbours that rounding has made equal have one error.
     columns: ColumnErrors,
     /// The errors of the outputs.
-    outputs: Vec<ReadingErrors>,
+    outputs: Vec<MeasurementErrors>,
     /// The places of differences of which nothing was measured, in their order: such a one has no end of an error.
     unmeasured: Vec<usize>,
 }
@@ -79,7 +79,8 @@ impl Weights {
     ) -> Result<Weights, Lost> {
         let columns = noisy_columns(task);
         let names = task.signals.names();
-        let errors: Vec<ReadingErrors> = columns.iter().map(|column| task.errors[&names[*column]]).collect();
+        let errors: Vec<MeasurementErrors> =
+            columns.iter().map(|column| task.errors[&names[*column]]).collect();
         let sensitivity = Sensitivity::of(&task.full_flow(), start, times, columns)?;
         let rows = sensitivity.first..sensitivity.first + sensitivity.rows;
         // an implicit output has no error of its own: a contact that creeps through a step of the resolution errs from one half of it to the other,
@@ -90,7 +91,7 @@ impl Weights {
             false => runs(&read.column(*column)[rows.clone()]),
         };
         let runs = sensitivity.columns.iter().map(of).collect();
-        let outputs: Vec<ReadingErrors> =
+        let outputs: Vec<MeasurementErrors> =
             (0..task.full.outputs.len()).map(|output| task.output_errors(output)).collect();
         let columns = ColumnErrors { errors, runs };
         let offset = match taken_off {
@@ -264,7 +265,7 @@ impl Weights {
 }
 
 /// The variance of a reading's own error, by its place among the differences.
-fn own_variance(outputs: &[ReadingErrors], place: usize) -> f64 {
+fn own_variance(outputs: &[MeasurementErrors], place: usize) -> f64 {
     outputs[place % outputs.len()].variance().max(LEAST * LEAST)
 }
 

@@ -9,7 +9,7 @@
 //!
 //! Neighbours that rounding has made equal have one error: the last one of each column is kept in the state until the reading changes.
 
-use super::fit::ReadingErrors;
+use super::fit::MeasurementErrors;
 use super::sensitivity::Sensitivity;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
@@ -18,7 +18,7 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub(super) struct ColumnErrors {
     /// Of each column.
-    pub errors: Vec<ReadingErrors>,
+    pub errors: Vec<MeasurementErrors>,
     /// For each column the rows that are one reading.
     pub runs: Vec<Vec<Range<usize>>>,
 }

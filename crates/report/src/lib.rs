@@ -78,7 +78,7 @@ pub use poses::{conjecture_json, conjecture_text, poses_json, poses_page, poses_
 pub use ranks::{
     StateTableWriter, TableForm, accessibility_json, accessibility_text, design_json, design_text,
     drops_json, drops_text, global_json, global_text, rank_json, rank_so_far_json, rank_so_far_text,
-    rank_text, unseen_field_text,
+    rank_text, unobservable_field_text,
 };
 pub use recheck::{has_failed, recheck_json, recheck_text};
 #[doc(hidden)]

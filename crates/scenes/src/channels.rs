@@ -5,7 +5,7 @@ use super::simulation::{NOMINAL, TOUCH};
 use crate::not_told::not_told;
 use palmistry_lang::System;
 use palmistry_observe::{
-    CalibrationKind, EmptyCells, EstimateQuestion, Interpolation, ReadingErrors, SignalError, Signals,
+    CalibrationKind, EmptyCells, EstimateQuestion, Interpolation, MeasurementErrors, SignalError, Signals,
     SparseColumn, Task,
 };
 use std::collections::BTreeMap;
@@ -139,12 +139,12 @@ pub(super) fn corrected(signals: Signals, known: &BTreeMap<String, f64>) -> Resu
 }
 
 /// The errors of the readings of a column, as the scene states them; none where nothing is said of the column itself.
-fn stated(scene: &Scene, name: &str) -> Option<ReadingErrors> {
+fn stated(scene: &Scene, name: &str) -> Option<MeasurementErrors> {
     let touch = TOUCH.contains(&name).then_some(scene.sensor);
     let channel = scene.channels.get(name).copied();
     let common = touch.as_ref().map_or((0.0, 0.0), |sensor| (sensor.noise, sensor.resolution));
     let Channel { noise, resolution, .. } = channel.unwrap_or_default();
-    (channel.is_some() || touch.is_some()).then(|| ReadingErrors {
+    (channel.is_some() || touch.is_some()).then(|| MeasurementErrors {
         normal: noise.unwrap_or(common.0),
         rounding: resolution.unwrap_or(common.1),
     })
@@ -184,14 +184,14 @@ pub(super) fn tell(
         all.filter(|(place, _)| !task.full.is_implicit(*place)).map(|(_, name)| name.clone()).collect();
     for name in task.signals.names() {
         // an output is read with the errors of `[sensor]` unless it has its own; of a body between palms these are of the contacts
-        let common = ReadingErrors { normal: scene.sensor.noise, rounding: scene.sensor.resolution };
-        let unsaid = if !has_palms && outputs.contains(name) { common } else { ReadingErrors::default() };
+        let common = MeasurementErrors { normal: scene.sensor.noise, rounding: scene.sensor.resolution };
+        let unsaid = if !has_palms && outputs.contains(name) { common } else { MeasurementErrors::default() };
         let gain = sensors.get(name).map_or(1.0, |known| known.gain.abs());
-        let ReadingErrors { normal, rounding } = stated(scene, name).unwrap_or(unsaid);
+        let MeasurementErrors { normal, rounding } = stated(scene, name).unwrap_or(unsaid);
         // errors of filled cells hang together: a measured value errs for all rows that it stands for, as so many independent errors of their root's size do
         let filled = sparse.iter().find(|own| own.column == *name && own.empty == EmptyCells::Interpolated);
         let together = filled.map_or(1.0, |own| own.stands_for.sqrt()) / gain;
-        let errors = ReadingErrors { normal: normal * together, rounding: rounding * together };
+        let errors = MeasurementErrors { normal: normal * together, rounding: rounding * together };
         if !errors.are_none() {
             task.errors.insert(name.clone(), errors);
         }
@@ -206,7 +206,7 @@ pub(super) fn tell(
         return Err(scene.error_at(&format!("sensor.{driving}"), message, "this sensor", help));
     }
     let of_outputs = || outputs.iter().map(|name| task.errors.get(name).copied().unwrap_or_default());
-    let mut largest = of_outputs().map(ReadingErrors::variance).fold(0.0, f64::max).sqrt();
+    let mut largest = of_outputs().map(MeasurementErrors::variance).fold(0.0, f64::max).sqrt();
     if is_nothing_read {
         // a unit for what is weighted anyway
         largest = task.errors.values().map(|errors| errors.variance()).fold(0.0, f64::max).sqrt();
@@ -221,11 +221,11 @@ pub(super) fn tell(
         task.sigma = if largest > 0.0 { largest } else { NOMINAL };
         let alike = of_outputs().next().filter(|first| of_outputs().all(|other| other == *first));
         let common = alike.filter(|errors| !errors.are_none());
-        let common = common.unwrap_or(ReadingErrors { normal: task.sigma, rounding: 0.0 });
+        let common = common.unwrap_or(MeasurementErrors { normal: task.sigma, rounding: 0.0 });
         task.noise = palmistry_observe::Noise::Stated { normal: common.normal, rounding: common.rounding };
         for name in &outputs {
             // what is read without error is good to a nanometre, or its like
-            task.errors.entry(name.clone()).or_insert(ReadingErrors { normal: NOMINAL, rounding: 0.0 });
+            task.errors.entry(name.clone()).or_insert(MeasurementErrors { normal: NOMINAL, rounding: 0.0 });
         }
     } else if reads_otherwise {
         task.exact = false;

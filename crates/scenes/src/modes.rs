@@ -11,7 +11,7 @@ use super::scene::{Guess, SceneError};
 use super::simulation::Simulation;
 use palmistry_bodies::mechanics::moving::Ended;
 use palmistry_lang::UnknownKind;
-use palmistry_observe::{MotionRankFound, NoiseFrom, Objection, RecordReading, Signals, Update};
+use palmistry_observe::{MotionRankFound, NoiseFrom, Objection, ReadRecord, Signals, Update};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -97,7 +97,7 @@ impl Experiment {
             settings.guess = Guess::Sample;
             settings.clamp.clear();
             let ground = Groundwork::of(scene, false)?;
-            let reading = RecordReading::whole(self.record.clone());
+            let reading = ReadRecord::whole(self.record.clone());
             let mut experiment = Experiment::with_readings(ground, reading, None, Steady::AreConstants)?;
             experiment.scene.observer.guess = Guess::Values(mode.guess.clone());
             all.push((mode.name.clone(), experiment));

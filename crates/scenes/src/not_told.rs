@@ -4,7 +4,7 @@ use palmistry_lang::{Kind, Role, SymbolInfo, System};
 use palmistry_math::expression::{NodeId, Symbol};
 use palmistry_math::number::{rational_from_f64, rational_to_f64};
 use palmistry_observe::{CalibrationKind, EstimateQuestion, Signals, Sought, declare, sought};
-use palmistry_rank::observability::{Ceiling, Seen, generic_answer};
+use palmistry_rank::observability::{Ceiling, Observability, generic_answer};
 use std::collections::HashMap;
 
 /// What is sought that no readings tell, whatever drives the inputs, where a gain or a bias is sought: by the rank of the observability
@@ -41,7 +41,7 @@ pub(crate) fn not_told(system: &System, wanted: &EstimateQuestion, signals: &Sig
         at.insert(delay, system.graph.integer(0));
     }
     let answer = generic_answer(&system, &at, Ceiling::Rests);
-    let unseen = answer.unknowns.iter().filter(|(_, seen)| *seen == Seen::No);
+    let unseen = answer.unknowns.iter().filter(|(_, seen)| *seen == Observability::No);
     let unseen: Vec<&str> = unseen.map(|(symbol, _)| system.symbol_name(*symbol)).collect();
     names.into_iter().filter(|name| unseen.contains(&name.as_str())).collect()
 }

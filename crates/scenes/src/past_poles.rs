@@ -12,9 +12,7 @@ use super::scene::{Guess, Method};
 use crate::motion_rank::MotionRank;
 use palmistry_bodies::mechanics::Palm;
 use palmistry_lang::System;
-use palmistry_observe::{
-    NoiseFrom, Objection, RecordReading, SampleEstimate, Seam, Track, Update, UpdateEnd,
-};
+use palmistry_observe::{NoiseFrom, Objection, ReadRecord, SampleEstimate, Seam, Track, Update, UpdateEnd};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -146,7 +144,7 @@ impl Experiment {
         settings.known.retain(|name, _| system.find_symbol(name.split('.').next().unwrap_or(name)).is_some());
         scene.columns.clear();
         let ground = Groundwork::with_system(scene, system, false).ok()?;
-        let reading = RecordReading::whole(self.record.clone());
+        let reading = ReadRecord::whole(self.record.clone());
         Experiment::with_readings(ground, reading, None, Steady::AreConstants).ok()
     }
 

@@ -9,7 +9,7 @@ use palmistry_lang::{Assignment, Kind, Role, System, given_number};
 use palmistry_math::expression::{Input, Program};
 use palmistry_math::number::Floats;
 use palmistry_observe::{CalibrationKind, EstimateQuestion, Model, MotionRankFound, Task};
-use palmistry_rank::observability::{Ceiling, GenericAnswer, Seen, generic_answer};
+use palmistry_rank::observability::{Ceiling, GenericAnswer, Observability, generic_answer};
 use palmistry_reduce::{LeastModel, ReduceQuestion, WhyLeftOut, reduce};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -281,7 +281,7 @@ impl Experiment {
         let answer = generic_answer(&system, &Assignment::new(), Ceiling::Rests);
         let names = self.names();
         let unseen = |answer: &GenericAnswer, system: &System| -> Vec<String> {
-            let all = answer.unknowns.iter().filter(|(_, seen)| *seen == Seen::No);
+            let all = answer.unknowns.iter().filter(|(_, seen)| *seen == Observability::No);
             all.map(|(symbol, _)| system.symbol_name(*symbol).to_owned()).collect()
         };
         let mut unobservable = unseen(&answer, &system);
@@ -303,7 +303,9 @@ impl Experiment {
             let is_seen = |sought: &&str| {
                 let mut all = with.unknowns.iter();
                 sought == name
-                    || all.any(|(symbol, seen)| other.symbol_name(*symbol) == *sought && *seen == Seen::Yes)
+                    || all.any(|(symbol, seen)| {
+                        other.symbol_name(*symbol) == *sought && *seen == Observability::Yes
+                    })
             };
             if names.iter().all(is_seen) {
                 cures.push(name.clone());

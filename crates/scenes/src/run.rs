@@ -10,12 +10,12 @@ use super::simulation::{NOMINAL, Simulation, TOUCH, deviation};
 use super::since::Since;
 use super::system_motion::SystemMotion;
 use super::terrain::Closure;
-use super::unguided::{PalmReadings, palm_readings};
+use super::unguided::{PalmMeasurements, palm_measurements};
 use miette::Diagnostic;
 use palmistry_io::UNINTERRUPTED;
 use palmistry_lang::System;
 use palmistry_observe::{
-    EstimateQuestion, Fault, ModelError, MovingWindow, Noise, Observer, Record, RecordError, RecordReading,
+    EstimateQuestion, Fault, ModelError, MovingWindow, Noise, Observer, ReadRecord, Record, RecordError,
     RecordRows, Signals, SparseColumn, Task, Track, WindowSearch,
 };
 use std::path::Path;
@@ -138,7 +138,7 @@ impl Experiment {
                     record = names.read(&own, record.names()).map_err(place)?;
                     written = Some(own);
                 }
-                (RecordReading::whole(record), written)
+                (ReadRecord::whole(record), written)
             }
             (None, Some(file)) => {
                 let needed = ground.needed();
@@ -160,12 +160,12 @@ impl Experiment {
     /// What is wrong with the readings, or with what is asked of them, with the place in the scene.
     pub(super) fn with_readings(
         ground: Groundwork,
-        reading: RecordReading,
+        reading: ReadRecord,
         written: Option<Record>,
         steady: Steady,
     ) -> Result<Experiment, SceneError> {
         let Groundwork { scene, system, simulation, begun, described, simulates, known, .. } = ground;
-        let RecordReading { record, faults, sparse, began, outside, .. } = reading;
+        let ReadRecord { record, faults, sparse, began, outside, .. } = reading;
         let (record, origin) = match simulates {
             // simulated times are counted from zero
             true => (record, 0.0),
@@ -295,9 +295,9 @@ impl Experiment {
     /// # Errors
     /// The name of what is missing.
     #[doc(hidden)]
-    pub fn palm_readings(&self) -> Result<PalmReadings, &'static str> {
+    pub fn palm_measurements(&self) -> Result<PalmMeasurements, &'static str> {
         let rows = (self.scene.observer.window + 1).min(self.signals.times().len());
-        palm_readings(&self.scene, &self.system, &self.question.known, &self.signals, rows)
+        palm_measurements(&self.scene, &self.system, &self.question.known, &self.signals, rows)
     }
 
     /// The observer of a name, with the scene's settings.

@@ -327,7 +327,7 @@ fn what_drives_the_model_is_held_or_goes_straight() {
                 let own = number(&json, &format!("/observers/{observer}/updates/0/states/{name}/recovered"));
                 assert!((own - truth).abs() < 1e-7, "{interpolation}: {name} {own}");
             }
-            assert!(number(&json, &format!("/observers/{observer}/updates/0/misfit")) < 1e-7);
+            assert!(number(&json, &format!("/observers/{observer}/updates/0/residual")) < 1e-7);
         }
         assert_eq!(json["rows_left_out"], serde_json::json!({ "start": 1, "end": 3 }));
         assert_eq!(

@@ -4,7 +4,7 @@ use crate::observe::{NEVER, REGIMES, experiment, text};
 use palmistry::experiment::Experiment;
 use palmistry::observer::{
     EstimateQuestion, MovingWindow, Noise, NoiseFrom, Signals, Suspect, Task, Track, Update, UpdateEnd,
-    WhenBlind, WindowSearch,
+    WhenUnobservable, WindowSearch,
 };
 
 /// The standard deviation of the contacts, in m.
@@ -121,7 +121,7 @@ fn a_spring_twice_as_stiff_is_noticed() {
             window: 80,
             steps: 50,
             blind: 1.0,
-            when_blind: WhenBlind::Hold,
+            when_blind: WhenUnobservable::Hold,
         };
         (task.exact, task.sigma, task.noise) = (false, NOISE, Noise::Stated { normal: NOISE, rounding: 0.0 });
         // v is zero at first: how well it is seen is measured against the greatest speed

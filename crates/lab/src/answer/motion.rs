@@ -7,9 +7,9 @@ use palmistry_lang::{Kind, SymbolInfo, System};
 use palmistry_math::expression::{Program, Symbol};
 use palmistry_math::number::{Floats, rational_to_f64};
 use palmistry_observe::{Response, ResponseQuestion, response};
-use palmistry_rank::observability::{UnseenField, float_inputs};
+use palmistry_rank::observability::{UnobservableField, float_inputs};
 use palmistry_rank::sweep::{RankQuestion, answer_rank};
-use palmistry_report::unseen_field_text;
+use palmistry_report::unobservable_field_text;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap};
@@ -50,7 +50,7 @@ pub(super) fn motion(place: &Place<'_>, asked: &MotionAsked) -> Result<Value, Re
     };
     let first = from(&asked.start)?;
     let mut answer = told(&first);
-    answer["fields"] = fields.iter().map(|field| json!(unseen_field_text(field))).collect();
+    answer["fields"] = fields.iter().map(|field| json!(unobservable_field_text(field))).collect();
     if let Some((place, far)) = asked.along {
         let field = fields.get(place).ok_or_else(|| Refused::new("there is no such field"))?;
         let start = moved(&system, field, &asked.start, far)?;
@@ -94,7 +94,7 @@ fn difference(first: &Response, second: &Response) -> f64 {
 }
 
 /// The unobservable directions that are known as vector fields.
-fn unobservable(system: &mut System) -> Result<Vec<UnseenField>, Refused> {
+fn unobservable(system: &mut System) -> Result<Vec<UnobservableField>, Refused> {
     // where nothing is to be told of a rank there is a motion all the same
     let question = RankQuestion { samples: 0, ..RankQuestion::default() };
     let Ok(answer) = answer_rank(system, &question) else { return Ok(Vec::new()) };
@@ -127,7 +127,7 @@ fn driven(
 /// The state and the parameters so far along a field.
 fn moved(
     system: &System,
-    field: &UnseenField,
+    field: &UnobservableField,
     start: &BTreeMap<String, f64>,
     far: f64,
 ) -> Result<BTreeMap<String, f64>, Refused> {

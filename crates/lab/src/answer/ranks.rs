@@ -4,13 +4,13 @@ use super::place::Place;
 use super::{Refused, Tell};
 use palmistry_io::UNINTERRUPTED;
 use palmistry_prove::drops::{DropAnswer, where_it_drops_telling};
-use palmistry_rank::observability::{SOLUTIONS_WORK, UnseenField};
+use palmistry_rank::observability::{SOLUTIONS_WORK, UnobservableField};
 use palmistry_rank::sweep::{
     GlobalAnswer, RankQuestion, SolutionsWanted, answer_rank, answer_solutions_telling,
 };
 use palmistry_report::{
     drops_json, drops_text, formula_mathml_in, global_json, global_text, rank_json, rank_text,
-    unseen_field_text,
+    unobservable_field_text,
 };
 use serde_json::{Value, json};
 use std::sync::Mutex;
@@ -29,13 +29,13 @@ pub(super) fn rank(place: &Place<'_>, samples: u64, tell: Tell<'_>) -> Result<Va
     };
     let answer = answer_rank(&mut system, &question).map_err(|why| Refused::new(why.to_string()))?;
     let looks = system.looks.clone();
-    let field = |field: &UnseenField| {
+    let field = |field: &UnobservableField| {
         let components: Vec<Value> = field
             .components
             .iter()
             .map(|part| json!({ "of": part.name, "mathml": [formula_mathml_in(&part.name, &looks), formula_mathml_in(&part.text, &looks)], "text": part.text }))
             .collect();
-        json!({ "text": unseen_field_text(field), "components": components })
+        json!({ "text": unobservable_field_text(field), "components": components })
     };
     let branch = |branch: &palmistry_rank::sweep::BranchAnswer| {
         let motions = branch.motions.as_ref();

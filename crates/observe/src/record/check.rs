@@ -1,9 +1,7 @@
 //! Looks for what is wrong with the rows of a file.
 
 use super::spike::spikes;
-use super::{
-    Cell, Fault, FaultKind, FaultRules, MOST_FAULTS, OnFault, RecordError, RecordReading, RecordRows,
-};
+use super::{Cell, Fault, FaultKind, FaultRules, MOST_FAULTS, OnFault, ReadRecord, RecordError, RecordRows};
 use std::collections::BTreeSet;
 
 impl RecordRows {
@@ -11,7 +9,7 @@ impl RecordRows {
     ///
     /// # Errors
     /// There is a fault and the rules say to stop; or no row is left.
-    pub fn settle(self, rules: &FaultRules) -> Result<RecordReading, RecordError> {
+    pub fn settle(self, rules: &FaultRules) -> Result<ReadRecord, RecordError> {
         let faults = faults_of(&self, rules);
         // of what has so many faults not all are known
         if rules.on_fault == OnFault::Stop && !faults.is_empty() || faults.len() > MOST_FAULTS {
@@ -27,7 +25,7 @@ impl RecordRows {
         let settled = record.settle(rules);
         let (record, sparse, outside) =
             settled.map_err(|column| RecordError::NotMeasured { path: self.path, column })?;
-        Ok(RecordReading { record, faults, left_out, sparse, began, outside })
+        Ok(ReadRecord { record, faults, left_out, sparse, began, outside })
     }
 }
 

@@ -68,7 +68,7 @@ pub struct Record {
 
 /// A record that was read by rules, with what was wrong in the file.
 #[derive(Clone, Debug)]
-pub struct RecordReading {
+pub struct ReadRecord {
     /// The rows without fault.
     pub record: Record,
     /// All faults that were found, in the order of their rows. Rows with a fault are not in the record, but for a
@@ -84,11 +84,11 @@ pub struct RecordReading {
     pub outside: [usize; 2],
 }
 
-impl RecordReading {
+impl ReadRecord {
     /// Of a record with which nothing is wrong.
-    pub fn whole(record: Record) -> RecordReading {
+    pub fn whole(record: Record) -> ReadRecord {
         let (faults, left_out, sparse) = (Vec::new(), Vec::new(), Vec::new());
-        RecordReading { record, faults, left_out, sparse, began: None, outside: [0, 0] }
+        ReadRecord { record, faults, left_out, sparse, began: None, outside: [0, 0] }
     }
 }
 
@@ -159,11 +159,7 @@ impl Record {
     ///
     /// # Errors
     /// As [`Record::read`]; and when there is a fault and the rules say to stop, or no row is left.
-    pub fn read_checked(
-        path: &Path,
-        needed: &[&str],
-        rules: &FaultRules,
-    ) -> Result<RecordReading, RecordError> {
+    pub fn read_checked(path: &Path, needed: &[&str], rules: &FaultRules) -> Result<ReadRecord, RecordError> {
         RecordRows::read(path, needed)?.settle(rules)
     }
 
@@ -176,7 +172,7 @@ impl Record {
         needed: &[&str],
         names: &ColumnNames,
         rules: &FaultRules,
-    ) -> Result<RecordReading, RecordError> {
+    ) -> Result<ReadRecord, RecordError> {
         RecordRows::read_named(path, needed, names)?.settle(rules)
     }
 

@@ -28,9 +28,9 @@ fn errors_of_a_speed_add_up_in_the_place() {
     task.noise = Noise::Stated { normal: 0.1, rounding: 0.0 };
     assert!(!are_needed(&task));
     for (errors, variance) in [
-        (ReadingErrors { normal: 0.2, rounding: 0.0 }, 0.2 * 0.2 / 2.0),
+        (MeasurementErrors { normal: 0.2, rounding: 0.0 }, 0.2 * 0.2 / 2.0),
         // both samples are equal after rounding: they have one error
-        (ReadingErrors { normal: 0.0, rounding: 0.6 }, 0.6 * 0.6 / 12.0),
+        (MeasurementErrors { normal: 0.0, rounding: 0.6 }, 0.6 * 0.6 / 12.0),
     ] {
         task.errors.insert("u".to_owned(), errors);
         assert!(are_needed(&task));
@@ -77,8 +77,8 @@ fn erring<'a>(system: &System, question: &EstimateQuestion, signals: &'a Signals
     let mut task = Task::new(system, question, signals, &NEVER).unwrap();
     (task.exact, task.sigma) = (false, 0.02);
     task.noise = Noise::Stated { normal: 0.02, rounding: 0.01 };
-    task.errors.insert("a".to_owned(), ReadingErrors { normal: 0.01, rounding: 0.05 });
-    task.errors.insert("u".to_owned(), ReadingErrors { normal: 0.1, rounding: 0.0 });
+    task.errors.insert("a".to_owned(), MeasurementErrors { normal: 0.01, rounding: 0.05 });
+    task.errors.insert("u".to_owned(), MeasurementErrors { normal: 0.1, rounding: 0.0 });
     task
 }
 

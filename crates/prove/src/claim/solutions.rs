@@ -12,7 +12,7 @@ use palmistry_lang::{Statement, System, Value};
 use palmistry_math::expression::syntax::Relation;
 use palmistry_math::expression::{LOG2_ERROR, NodeId};
 use palmistry_rank::observability::{
-    Seen, Solutions, SolutionsOf, SolutionsQuestion, solutions, solve_conditions,
+    Observability, Solutions, SolutionsOf, SolutionsQuestion, solutions, solve_conditions,
 };
 
 /// As much work a claim may be, in products of residues.
@@ -153,7 +153,7 @@ fn proved(found: &SolutionsOf) -> Proved {
     let least = map.map_or(1, |(least, _)| *least);
     let by_map = map.map(|(_, map)| format!("all outputs are the same with {map}"));
     match (found.local, found.at_most) {
-        (Seen::No, _) => {
+        (Observability::No, _) => {
             let (engine, log2_error) = (SERIES.to_owned(), found.local_error);
             Proved { least: usize::MAX, most: usize::MAX, engine, log2_error }
         }
@@ -161,11 +161,11 @@ fn proved(found: &SolutionsOf) -> Proved {
             let engine = by_map.map_or_else(|| BASES.to_owned(), |map| format!("{BASES}; {map}"));
             Proved { least, most, engine, log2_error }
         }
-        (Seen::Yes, _) => {
+        (Observability::Yes, _) => {
             let engine = by_map.unwrap_or_else(|| SERIES.to_owned());
             Proved { least, most: usize::MAX - 1, engine, log2_error: found.local_error }
         }
-        (Seen::Undecided, _) => {
+        (Observability::Undecided, _) => {
             let engine = by_map.unwrap_or_default();
             Proved { least, most: usize::MAX, engine, log2_error: f64::NEG_INFINITY }
         }

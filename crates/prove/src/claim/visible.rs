@@ -22,7 +22,7 @@ use palmistry_math::expression::{
     zero_by_relations,
 };
 use palmistry_rank::observability::{
-    Branch, Codistribution, Frame, Length, Seen, UnseenField, unseen_motions,
+    Branch, Codistribution, Frame, Length, Observability, UnobservableField, unseen_motions,
 };
 use rand_chacha::ChaCha8Rng;
 
@@ -123,9 +123,11 @@ fn known(system: &mut System, on: &OnBranch, rng: &mut ChaCha8Rng) -> Result<(Ve
         let is_zero = |entry: &NodeId| system.graph.constant_value(*entry).is_some_and(|v| v.is_zero());
         found.push(match seen {
             _ if row.iter().all(is_zero) => Known::Seen(f64::NEG_INFINITY),
-            Seen::Yes => Known::Seen(joint.take().unwrap_or(f64::NEG_INFINITY)),
-            Seen::No => Known::Unseen(joint.take().unwrap_or(f64::NEG_INFINITY)),
-            Seen::Undecided => by_rows(system, on, &frame, *function, rng).unwrap_or_else(Known::Open),
+            Observability::Yes => Known::Seen(joint.take().unwrap_or(f64::NEG_INFINITY)),
+            Observability::No => Known::Unseen(joint.take().unwrap_or(f64::NEG_INFINITY)),
+            Observability::Undecided => {
+                by_rows(system, on, &frame, *function, rng).unwrap_or_else(Known::Open)
+            }
         });
     }
     Ok((found, frame))
@@ -185,7 +187,7 @@ fn fields_that_move(
     branch: &Branch,
     functions: &[NodeId],
     rng: &mut ChaCha8Rng,
-) -> Option<Vec<UnseenField>> {
+) -> Option<Vec<UnobservableField>> {
     let on_a_set =
         !branch.values.is_empty() || !branch.guards.iter().all(|guard| guard.need == Need::NotZero);
     if on_a_set || system.time == Time::Discrete || system.unknown_count() > MOST_FOR_FIELDS {
@@ -219,8 +221,8 @@ fn fields_that_move(
     Some(needed.into_iter().map(|field| found.fields[field].clone()).collect())
 }
 
-fn by_fields(fields: &[UnseenField]) -> Verdict {
-    let one = |field: &UnseenField| {
+fn by_fields(fields: &[UnobservableField]) -> Verdict {
+    let one = |field: &UnobservableField| {
         let parts = field.components.iter().map(|part| format!("{}' = {}", part.name, part.text));
         parts.collect::<Vec<_>>().join(", ")
     };

@@ -11,7 +11,9 @@ use palmistry_io::UNINTERRUPTED;
 use palmistry_lang::System;
 use palmistry_math::expression::{NodeId, Program, expand_angles, gradient};
 use palmistry_math::number::{PrimeField, Rationals};
-use palmistry_rank::observability::{Codistribution, Frame, Length, StateInWords, UnseenField, kernel, rank};
+use palmistry_rank::observability::{
+    Codistribution, Frame, Length, StateInWords, UnobservableField, kernel, rank,
+};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -26,7 +28,7 @@ const BITS: usize = 1 << 14;
 pub(super) fn kept_outputs(
     system: &mut System,
     on: &OnBranch,
-    field: &UnseenField,
+    field: &UnobservableField,
     rng: &mut ChaCha8Rng,
 ) -> Evidence {
     let states: Vec<_> = field.components.iter().map(|part| part.state).collect();

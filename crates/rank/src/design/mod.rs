@@ -11,7 +11,7 @@ mod search;
 mod variant;
 
 use crate::observability::{
-    CodistributionError, Frame, SOLUTIONS_WORK, Seen, Solutions, SolutionsQuestion, solutions,
+    CodistributionError, Frame, Observability, SOLUTIONS_WORK, Solutions, SolutionsQuestion, solutions,
     solve_conditions,
 };
 use crate::sweep::{RankQuestion, held_conditions, held_parameters, named_unknowns};
@@ -101,7 +101,7 @@ pub struct DesignTarget {
     /// What it is.
     pub kind: UnknownKind,
     /// Whether it is seen as things stand, locally.
-    pub seen: Seen,
+    pub seen: Observability,
     /// How many values it has as things stand, where one is asked for.
     pub solutions: Option<Solutions>,
 }
@@ -316,7 +316,7 @@ fn answered(system: &System, question: &DesignQuestion<'_>) -> Result<DesignAnsw
 
 /// How the targets stand in one system.
 struct Judged {
-    seen: Vec<Seen>,
+    seen: Vec<Observability>,
     /// Where one value is asked for.
     solutions: Vec<Option<Solutions>>,
     /// Why something of the rank is open.
@@ -343,18 +343,18 @@ enum Proof {
 
 impl Judged {
     fn is_met(&self) -> bool {
-        self.seen.iter().all(|seen| *seen == Seen::Yes)
+        self.seen.iter().all(|seen| *seen == Observability::Yes)
             && self.solutions.iter().flatten().all(|solutions| *solutions == Solutions::Finite(1))
     }
 
     /// Why it is not known whether all of them are identifiable, where none is shown not to be.
     fn undecided(&self) -> Option<String> {
-        if self.seen.contains(&Seen::No) {
+        if self.seen.contains(&Observability::No) {
             return None;
         }
         let of_rank = self
             .seen
-            .contains(&Seen::Undecided)
+            .contains(&Observability::Undecided)
             .then(|| self.open.clone().unwrap_or_else(|| "the rank is not known".to_owned()));
         let of_values = || {
             self.solutions.iter().flatten().find_map(|solutions| match solutions {
@@ -367,7 +367,7 @@ impl Judged {
 
     /// Whether it is shown that one of them is not identifiable.
     fn is_refuted(&self) -> bool {
-        self.seen.contains(&Seen::No) || self.has_several
+        self.seen.contains(&Observability::No) || self.has_several
     }
 }
 
@@ -392,9 +392,9 @@ impl Judge<'_> {
         let generic = Frame::new(&mut system, &conditions)?.generic;
         let seen = |name: &String| {
             let of_it = generic.unknowns.iter().find(|(symbol, _)| system.symbol_name(*symbol) == name);
-            of_it.map_or(Seen::Undecided, |(_, seen)| *seen)
+            of_it.map_or(Observability::Undecided, |(_, seen)| *seen)
         };
-        let seen: Vec<Seen> = self.wanted.iter().map(seen).collect();
+        let seen: Vec<Observability> = self.wanted.iter().map(seen).collect();
         let mut judged = Judged {
             solutions: vec![None; seen.len()],
             open: generic.open.clone(),
@@ -406,9 +406,9 @@ impl Judge<'_> {
         if !self.question.globally {
             return Ok(judged);
         }
-        if judged.seen.iter().any(|seen| *seen != Seen::Yes) {
-            let of = |seen: &Seen| match seen {
-                Seen::No => Some(Solutions::Infinite),
+        if judged.seen.iter().any(|seen| *seen != Observability::Yes) {
+            let of = |seen: &Observability| match seen {
+                Observability::No => Some(Solutions::Infinite),
                 _ => None,
             };
             judged.solutions = judged.seen.iter().map(of).collect();
@@ -447,7 +447,7 @@ impl Judge<'_> {
         if let Some(why) = whole.undecided() {
             return Proof::Undecided(why);
         }
-        let is_local = whole.seen.contains(&Seen::No);
+        let is_local = whole.seen.contains(&Observability::No);
         if is_local || (question.globally && !whole.is_met()) {
             return Proof::NotMet { is_local };
         }

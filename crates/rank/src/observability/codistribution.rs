@@ -2,7 +2,7 @@
 //! Lie derivatives along words of fields, added shortest first.
 
 use super::conditions::all_vanish;
-use super::generic::{GenericAnswer, Seen, generic_answer, generic_answer_of};
+use super::generic::{GenericAnswer, Observability, generic_answer, generic_answer_of};
 use super::needed::{CodistributionError, needed};
 use super::saturation::{Ceiling, RankGrowth, Saturation, Stop, is_invariant};
 use super::series::lie_derivative_by_series;
@@ -110,7 +110,7 @@ impl Frame {
         system: &System,
         conditions: &Assignment,
         asked: &[NodeId],
-    ) -> (GenericAnswer, Vec<Seen>) {
+    ) -> (GenericAnswer, Vec<Observability>) {
         generic_answer_of(system, conditions, self.around, asked)
     }
 

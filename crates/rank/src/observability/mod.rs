@@ -56,7 +56,9 @@ pub use fibre::{
 pub use flow::Flow;
 #[doc(hidden)]
 pub use generic::{Directions, Probe};
-pub use generic::{GenericAnswer, GenericRank, Seen, generic_answer, generic_answer_of, generic_rank};
+pub use generic::{
+    GenericAnswer, GenericRank, Observability, generic_answer, generic_answer_of, generic_rank,
+};
 pub(crate) use generic::{OutputRows, Rows};
 #[doc(hidden)]
 pub use interior::{Interior, interior};
@@ -86,6 +88,6 @@ pub use singular::{Spectrum, singular_values};
 pub use state::float_inputs;
 pub use state::{Coordinate, MissingInput, NamedCoordinate, State, StateInWords};
 pub use symmetry::{
-    FieldComponent, IdentifiableFunction, IdentifiableFunctions, NotReparametrised, SeenFunction,
-    UnseenField, UnseenMotions, identifiable_functions, reparametrise, unseen_motions,
+    FieldComponent, IdentifiableFunction, IdentifiableFunctions, NotReparametrised, ObservableFunction,
+    UnobservableDirections, UnobservableField, identifiable_functions, reparametrise, unseen_motions,
 };

@@ -65,4 +65,4 @@ pub use stream::{
     Elimination, Jacobi, StateVerdict, StatesError, Stream, StreamOptions, StreamReport, Verdicts,
 };
 pub use table::{StateRow, StateTable};
-pub use unseen::UnseenDirection;
+pub use unseen::UnobservableDirection;

@@ -24,7 +24,7 @@ use std::ops::Range;
 /// use palmistry_lang::System;
 /// use palmistry_rank::sweep::{RankPreparation, RankQuestion};
 /// let mut system: System = r#"
-///     system "A pendulum whose angle is seen"
+///     system "A pendulum whose angle is measured"
 ///     state phi, omega
 ///     param k = 2
 ///     angle phi

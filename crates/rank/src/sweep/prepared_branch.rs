@@ -16,7 +16,7 @@ use super::states::{Stretch, SweepOptions, SweepReport, Told};
 use super::stream::Stream;
 use super::table::TableOf;
 use crate::observability::{
-    Branch, Codistribution, Frame, Length, Locus, Probe, SignCell, UnseenMotions, unseen_motions,
+    Branch, Codistribution, Frame, Length, Locus, Probe, SignCell, UnobservableDirections, unseen_motions,
 };
 use palmistry_lang::{Assignment, System, Time};
 use palmistry_math::expression::{Graph, Guard, NodeId, Symbol, expand_angles};
@@ -265,7 +265,7 @@ fn motions(
     codistribution: &Codistribution,
     conditions: &Assignment,
     given: &[Symbol],
-) -> Option<UnseenMotions> {
+) -> Option<UnobservableDirections> {
     let found = codistribution.generic.rank().unwrap_or(codistribution.generic_rank());
     let unseen = found < system.unknown_count();
     let of_states = |system: &System, symbol: &Symbol, value: NodeId| {

@@ -5,7 +5,7 @@ use super::deviation::StandardDeviations;
 use super::part::MergeError;
 use super::states::SweepReport;
 use crate::observability::{
-    Branch, CodistributionError, Frame, GenericAnswer, LocusError, Stop, UnseenMotions, Unsolved,
+    Branch, CodistributionError, Frame, GenericAnswer, LocusError, Stop, UnobservableDirections, Unsolved,
 };
 use dashu::rational::RBig;
 use palmistry_budget::Spent;
@@ -48,7 +48,7 @@ pub struct BranchAnswer {
     pub cut_off: bool,
     /// What is not seen as fields, and its observable part as functions: where the rank is short of the dimension and no
     /// condition is one on states.
-    pub motions: Option<UnseenMotions>,
+    pub motions: Option<UnobservableDirections>,
     /// The rank of the full codistribution at the sampled states.
     pub full: SweepReport,
     /// How well each state is seen where what is measured has noise; none where the sweep was interrupted.

@@ -2,8 +2,8 @@
 
 use super::certainty::Certainty;
 use super::digits::{Digits, NoDigits};
-use super::unseen::UnseenDirection;
-use crate::observability::{GenericAnswer, Seen, Spectrum, State, StateInWords};
+use super::unseen::UnobservableDirection;
+use crate::observability::{GenericAnswer, Observability, Spectrum, State, StateInWords};
 use dashu::rational::RBig;
 use palmistry_lang::System;
 use palmistry_math::expression::Guard;
@@ -89,7 +89,7 @@ pub struct SweepReport {
     /// Its singular values to as many digits as were wanted, if any were.
     pub digits: Option<Result<Digits, NoDigits>>,
     /// What is not seen where the rank is short.
-    pub unseen: Vec<UnseenDirection>,
+    pub unseen: Vec<UnobservableDirection>,
     /// The smallest gap on which a computed rank rests.
     pub smallest_gap: f64,
     /// Whether it was stopped early.
@@ -151,10 +151,10 @@ impl GenericAnswer {
         };
         for ((symbol, seen), surely) in self.unknowns.iter_mut().zip(&self.seen_at_most) {
             if *surely || self.at_least == self.dimension {
-                *seen = Seen::Yes;
+                *seen = Observability::Yes;
             } else if takes_part(system.symbol_name(*symbol)) {
                 // the rank does without its column there, and so does it around
-                *seen = Seen::No;
+                *seen = Observability::No;
             }
         }
     }

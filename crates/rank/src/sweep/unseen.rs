@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 /// Directions of one kind that are not seen, with one example.
 #[derive(Clone, Debug)]
-pub struct UnseenDirection {
+pub struct UnobservableDirection {
     /// The states that take part, by name.
     pub states: Vec<String>,
     /// At how many sampled states.
@@ -46,9 +46,9 @@ pub(super) struct UnseenExample {
     pub index: u64,
     /// As `1 r1 - 0.5 omega0`.
     pub text: String,
-    /// As [`UnseenDirection::vector`].
+    /// As [`UnobservableDirection::vector`].
     pub vector: Vec<RBig>,
-    /// As [`UnseenDirection::exact`].
+    /// As [`UnobservableDirection::exact`].
     pub exact: bool,
 }
 
@@ -100,11 +100,18 @@ impl UnseenDirections {
     pub fn into_list<E>(
         self,
         at: impl Fn(u64) -> Result<StateInWords, E>,
-    ) -> Result<Vec<UnseenDirection>, E> {
+    ) -> Result<Vec<UnobservableDirection>, E> {
         let with_example = |(states, kind): (Vec<String>, UnseenKind)| {
             let UnseenExample { index, text, vector, exact } = kind.example?;
-            let whole =
-                |at| UnseenDirection { states, count: kind.count, example: text, index, at, vector, exact };
+            let whole = |at| UnobservableDirection {
+                states,
+                count: kind.count,
+                example: text,
+                index,
+                at,
+                vector,
+                exact,
+            };
             Some(at(index).map(whole))
         };
         self.0.into_iter().filter_map(with_example).collect()

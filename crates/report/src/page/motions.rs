@@ -1,16 +1,16 @@
 //! What is not seen as vector fields, and what is seen as functions, as mathematics.
 
 use crate::formula::{field_mathml, formula_mathml_in};
-use crate::ranks::motions::{signed_parts, unseen_field_text};
+use crate::ranks::motions::{signed_parts, unobservable_field_text};
 use maud::{Markup, PreEscaped, html};
 use palmistry_lang::Looks;
-use palmistry_rank::observability::{UnseenField, UnseenMotions};
+use palmistry_rank::observability::{UnobservableDirections, UnobservableField};
 use palmistry_workbench::paper::SetRank;
 
 /// Of each set on which something is unseen, the fields and the functions.
 pub(super) fn unseen_motions(ranks: &[SetRank], looks: &Looks) -> Markup {
     let found = ranks.iter().filter_map(|rank| Some((rank, rank.answer().ok()?)));
-    let found: Vec<(&SetRank, &UnseenMotions)> = found
+    let found: Vec<(&SetRank, &UnobservableDirections)> = found
         .flat_map(|(rank, answer)| {
             answer.branches.iter().filter_map(move |b| Some((rank, b.motions.as_ref()?)))
         })
@@ -20,7 +20,7 @@ pub(super) fn unseen_motions(ranks: &[SetRank], looks: &Looks) -> Markup {
     }
 }
 
-fn of_a_set(name: &str, found: &UnseenMotions, looks: &Looks) -> Markup {
+fn of_a_set(name: &str, found: &UnobservableDirections, looks: &Looks) -> Markup {
     let scope =
         if found.for_all_parameters { ", for all parameter values" } else { " at the values in the file" };
     html! {
@@ -61,9 +61,9 @@ fn of_a_set(name: &str, found: &UnseenMotions, looks: &Looks) -> Markup {
     }
 }
 
-fn field_formula(field: &UnseenField, looks: &Looks) -> PreEscaped<String> {
+fn field_formula(field: &UnobservableField, looks: &Looks) -> PreEscaped<String> {
     field_mathml(&signed_parts(field), looks)
-        .map_or_else(|| in_letters(&unseen_field_text(field)), PreEscaped)
+        .map_or_else(|| in_letters(&unobservable_field_text(field)), PreEscaped)
 }
 
 fn expression(text: &str, looks: &Looks) -> PreEscaped<String> {

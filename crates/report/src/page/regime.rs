@@ -13,7 +13,7 @@ use crate::structure::{DiagramGround, NodeVerdict, structure_picture};
 use maud::{Markup, PreEscaped, html};
 use palmistry_lang::Looks;
 use palmistry_prove::claim::Outcome;
-use palmistry_rank::observability::Seen;
+use palmistry_rank::observability::Observability;
 use palmistry_rank::sweep::RankAnswer;
 use palmistry_workbench::paper::{
     DerivativesFound, FileFindings, LineFound, MapFound, ReductionFound, SetRank,
@@ -44,7 +44,7 @@ pub(super) fn file_section(anchor: &str, file: &FileFindings, claims: &Markup, u
             (claims)
             @if !file.ranks.is_empty() {
                 h3 { "What is observable" }
-                @for line in granted(file) { p { (line) "." } }
+                @for line in granted(file) { p { (capitalised(&line)) "." } }
                 (unknowns(&file.ranks, looks)) (unseen_motions(&file.ranks, looks)) (ranks(&file.ranks, looks))
             }
             @for map in &file.maps { (maps(map, units)) }
@@ -69,8 +69,8 @@ fn structure(file: &FileFindings) -> Markup {
             branch.into_iter().flat_map(|branch| branch.unknowns.iter().zip(&branch.generic.unknowns));
         let found = unknowns.filter(|((own, _), _)| own == name).map(|(_, (_, seen))| *seen).next();
         match found {
-            Some(Seen::Yes) => NodeVerdict::Observable,
-            Some(Seen::No) => NodeVerdict::Unobservable,
+            Some(Observability::Yes) => NodeVerdict::Observable,
+            Some(Observability::No) => NodeVerdict::Unobservable,
             _ => NodeVerdict::Open,
         }
     };
@@ -85,6 +85,12 @@ fn structure(file: &FileFindings) -> Markup {
             }
         }
     }
+}
+
+/// As a sentence begins.
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// What the ranks of a file take for granted; the first of them is that at all states.
@@ -221,10 +227,13 @@ fn distinct_words(answer: &RankAnswer) -> Vec<String> {
 
 /// The rank on each set, a row each.
 fn ranks(ranks: &[SetRank], looks: &Looks) -> Markup {
+    let answers = ranks.iter().filter_map(|rank| rank.answer().ok());
+    let has_own = answers.flat_map(|answer| &answer.branches).any(|branch| branch.rows.is_some());
     html! {
         div.scroll { table {
             thead { tr {
-                th { "states" } th { "rank" } th { "unobservable" } th { "rank, rows of the file" } th { "unobservable by these" }
+                th { "states" } th { "rank" } th { "unobservable" }
+                @if has_own { th { "rank, rows of the file" } th { "unobservable by these" } }
                 th { "Lie derivatives used" } th { "sampled" } th { "certified" } th { "least observable" }
             } }
             tbody {
@@ -235,14 +244,16 @@ fn ranks(ranks: &[SetRank], looks: &Looks) -> Markup {
                             Ok(answer) => {
                                 td.k { b { (ranks_in_words(answer, false)) } " of " (answer.dimension) }
                                 td { (in_symbols(&unseen(answer, false), looks)) }
-                                td { b { (ranks_in_words(answer, true)) } }
-                                td { (in_symbols(&unseen(answer, true), looks)) }
+                                @if has_own {
+                                    td { b { (ranks_in_words(answer, true)) } }
+                                    td { (in_symbols(&unseen(answer, true), looks)) }
+                                }
                                 td.w { @for words in distinct_words(answer) { div { (words) } } }
                                 td.n { (answer.branches.iter().map(|b| b.full.samples).sum::<u64>()) }
                                 td.n { (answer.branches.iter().map(|b| b.full.certified).sum::<u64>()) }
                                 td.n { (least_observable(answer)) }
                             }
-                            Err(why) => { td colspan="8" { (why) } }
+                            Err(why) => { td colspan=(if has_own { "8" } else { "6" }) { (why) } }
                         }
                     }
                 }

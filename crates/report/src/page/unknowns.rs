@@ -4,7 +4,7 @@ use super::inline::in_line;
 use crate::ranks::generic::{generic_sentence, unknown_verdict};
 use maud::{Markup, html};
 use palmistry_lang::Looks;
-use palmistry_rank::observability::Seen;
+use palmistry_rank::observability::Observability;
 use palmistry_rank::sweep::BranchAnswer;
 use palmistry_workbench::paper::SetRank;
 
@@ -35,7 +35,7 @@ fn of_branch(branch: &BranchAnswer, looks: &Looks) -> Markup {
                         tr {
                             td { (in_line(name, looks)) }
                             td { (kind.name()) }
-                            td.bad[*seen == Seen::No] { (unknown_verdict(*kind, *seen)) }
+                            td.bad[*seen == Observability::No] { (unknown_verdict(*kind, *seen)) }
                         }
                     }
                 }

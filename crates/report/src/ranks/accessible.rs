@@ -5,7 +5,7 @@ use super::generic::finite;
 use super::seen::{part_text, place_text};
 use crate::names::{fields_json, fields_text, values_json, values_text};
 use palmistry_rank::observability::RankBounds;
-use palmistry_rank::sweep::{AccessibilityAnswer, AccessibilityBranch, SweepReport, UnseenDirection};
+use palmistry_rank::sweep::{AccessibilityAnswer, AccessibilityBranch, SweepReport, UnobservableDirection};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -99,7 +99,7 @@ pub fn accessibility_text(answer: &AccessibilityAnswer) -> String {
 }
 
 /// `dx - 2 dy`
-fn differential_text(direction: &UnseenDirection) -> String {
+fn differential_text(direction: &UnobservableDirection) -> String {
     let mut text = String::new();
     for (name, part) in direction.states.iter().zip(&direction.vector) {
         let part = part_text(part);

@@ -2,7 +2,7 @@
 
 use crate::layout::prose;
 use palmistry_lang::UnknownKind;
-use palmistry_rank::observability::{GenericAnswer, Seen};
+use palmistry_rank::observability::{GenericAnswer, Observability};
 use palmistry_rank::sweep::GenericOnBranch;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -13,13 +13,13 @@ pub(super) fn finite(value: f64) -> Value {
 }
 
 /// What is said of an unknown.
-pub(crate) fn unknown_verdict(kind: UnknownKind, seen: Seen) -> &'static str {
+pub(crate) fn unknown_verdict(kind: UnknownKind, seen: Observability) -> &'static str {
     match (kind, seen) {
-        (UnknownKind::Parameter, Seen::Yes) => "locally identifiable",
-        (_, Seen::Yes) => "locally observable",
-        (UnknownKind::Parameter, Seen::No) => "non-identifiable",
-        (_, Seen::No) => "unobservable",
-        (_, Seen::Undecided) => "undecided",
+        (UnknownKind::Parameter, Observability::Yes) => "locally identifiable",
+        (_, Observability::Yes) => "locally observable",
+        (UnknownKind::Parameter, Observability::No) => "non-identifiable",
+        (_, Observability::No) => "unobservable",
+        (_, Observability::Undecided) => "undecided",
     }
 }
 
@@ -37,7 +37,7 @@ pub(super) fn add_generic_json(generic: &GenericAnswer, unknowns: &Unknowns, obj
         "derivatives": generic.order,
         "open": generic.open,
     });
-    let unknown = |((name, kind), (_, seen)): (&(String, UnknownKind), &(_, Seen))| json!({ "name": name, "kind": kind.name(), "verdict": unknown_verdict(*kind, *seen) });
+    let unknown = |((name, kind), (_, seen)): (&(String, UnknownKind), &(_, Observability))| json!({ "name": name, "kind": kind.name(), "verdict": unknown_verdict(*kind, *seen) });
     let unknowns = unknowns.iter().zip(&generic.unknowns).map(unknown);
     object["unknowns"] = unknowns.collect();
     object["unobservable_dimension"] = json!(generic.rank().map(|rank| generic.dimension - rank));

@@ -7,7 +7,7 @@ use crate::names::{plain_number, values_json, values_text};
 use palmistry_io::foreign::shown;
 use palmistry_lang::UnknownKind;
 use palmistry_rank::observability::{
-    IdentifiableFunction, IdentifiableFunctions, SecondPoint, Seen, Solutions, SolutionsOf,
+    IdentifiableFunction, IdentifiableFunctions, Observability, SecondPoint, Solutions, SolutionsOf,
 };
 use palmistry_rank::sweep::GlobalAnswer;
 use serde_json::{Value, json};
@@ -148,8 +148,8 @@ fn strongest(of_it: &SolutionsOf) -> &'static str {
     match (&of_it.solutions, kind) {
         (Solutions::Finite(1), UnknownKind::Parameter) => "globally identifiable",
         (Solutions::Finite(1), _) => "globally observable",
-        (Solutions::Infinite, _) => unknown_verdict(kind, Seen::No),
-        (Solutions::Finite(_), _) => unknown_verdict(kind, Seen::Yes),
+        (Solutions::Infinite, _) => unknown_verdict(kind, Observability::No),
+        (Solutions::Finite(_), _) => unknown_verdict(kind, Observability::Yes),
         (Solutions::Undecided(_), _) => unknown_verdict(kind, of_it.local),
     }
 }

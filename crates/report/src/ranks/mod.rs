@@ -17,6 +17,6 @@ pub use design::{design_json, design_text};
 pub use drops::{drops_json, drops_text};
 pub use generic::{rank_so_far_json, rank_so_far_text};
 pub use global::{global_json, global_text};
-pub use motions::unseen_field_text;
+pub use motions::unobservable_field_text;
 pub(super) use seen::deviation_text;
 pub use state_table::{StateTableWriter, TableForm};

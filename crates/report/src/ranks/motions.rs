@@ -3,12 +3,12 @@
 use crate::claims::outcomes::error_bound;
 use crate::formula::SignedPart;
 use crate::layout::{counted, item};
-use palmistry_rank::observability::{FieldComponent, UnseenField, UnseenMotions};
+use palmistry_rank::observability::{FieldComponent, UnobservableDirections, UnobservableField};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// A field as a differential operator: `x d/dx - y d/dy + (a + b) d/dz`.
-pub fn unseen_field_text(field: &UnseenField) -> String {
+pub fn unobservable_field_text(field: &UnobservableField) -> String {
     let mut text = String::new();
     for SignedPart { negative, rate, state } in signed_parts(field) {
         text.push_str(match (text.is_empty(), negative) {
@@ -27,7 +27,7 @@ pub fn unseen_field_text(field: &UnseenField) -> String {
 }
 
 /// The components of a field, each with its sign: that of a sum or a difference is that of its first term alone.
-pub(crate) fn signed_parts(field: &UnseenField) -> Vec<SignedPart<'_>> {
+pub(crate) fn signed_parts(field: &UnobservableField) -> Vec<SignedPart<'_>> {
     fn part(FieldComponent { text, name: state, .. }: &FieldComponent) -> SignedPart<'_> {
         match text.strip_prefix('-').filter(|rest| !is_sum(rest)) {
             Some(rate) => SignedPart { negative: true, rate, state },
@@ -61,7 +61,7 @@ fn certainty(log2_error: f64) -> String {
 }
 
 /// Identifiable combinations and unobservable directions as text, before what was found at sampled states or alone.
-pub(super) fn motions_text(found: &UnseenMotions, sampled: bool, out: &mut String) {
+pub(super) fn motions_text(found: &UnobservableDirections, sampled: bool, out: &mut String) {
     let scope = if found.for_all_parameters { ", for all parameter values" } else { "" };
     let degree = if found.cut_off { "; higher degrees have too many coefficients to be tried" } else { "" };
     if !found.functions.is_empty() || found.functions_missing > 0 {
@@ -78,7 +78,8 @@ pub(super) fn motions_text(found: &UnseenMotions, sampled: bool, out: &mut Strin
     let directions = if found.directions() == 1 { "direction" } else { "directions" };
     let _ = writeln!(out, "unobservable {directions}{scope}:");
     for field in &found.fields {
-        let _ = writeln!(out, "  {}  (proved, {})", unseen_field_text(field), certainty(field.log2_error));
+        let _ =
+            writeln!(out, "  {}  (proved, {})", unobservable_field_text(field), certainty(field.log2_error));
     }
     if found.fields_missing > 0 {
         let below = if sampled { ": below each is shown at one state" } else { "" };
@@ -93,10 +94,10 @@ pub(super) fn motions_text(found: &UnseenMotions, sampled: bool, out: &mut Strin
 }
 
 /// The same as JSON.
-pub(super) fn motions_json(found: &UnseenMotions) -> Value {
+pub(super) fn motions_json(found: &UnobservableDirections) -> Value {
     json!({
         "fields": found.fields.iter().map(|field| json!({
-            "text": unseen_field_text(field),
+            "text": unobservable_field_text(field),
             "components": field.components.iter().map(|part| (part.name.clone(), json!(part.text)))
                 .collect::<serde_json::Map<_, _>>(),
             "error_bound": error_bound(field.log2_error),

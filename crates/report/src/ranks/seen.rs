@@ -5,7 +5,7 @@ use crate::names::plain_number;
 use dashu::rational::RBig;
 use palmistry_math::number::{rational_to_f64, round_to_decimal};
 use palmistry_rank::observability::{NamedCoordinate, StateInWords};
-use palmistry_rank::sweep::{LeastObservable, NEARLY_INVISIBLE, StandardDeviations, UnseenDirection};
+use palmistry_rank::sweep::{LeastObservable, NEARLY_INVISIBLE, StandardDeviations, UnobservableDirection};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -24,7 +24,7 @@ pub(super) fn place_text(state: &StateInWords) -> String {
 }
 
 /// A direction as a vector: `(r1, r2) += t (1, -2), that is d/dr1 - 2 d/dr2`.
-pub(super) fn direction_text(direction: &UnseenDirection) -> String {
+pub(super) fn direction_text(direction: &UnobservableDirection) -> String {
     let parts: Vec<String> = direction.vector.iter().map(part_text).collect();
     let mut field = String::new();
     for (name, part) in direction.states.iter().zip(&parts) {

@@ -2,7 +2,7 @@
 
 use super::super::recovered::TouchTrack;
 use super::super::run::Experiment;
-use super::super::unguided::{PalmReadings, palm_readings};
+use super::super::unguided::{PalmMeasurements, palm_measurements};
 use super::law::PalmsAt;
 use super::record::{Unknowns, WholeRecord};
 use palmistry_bodies::shape::{SupportSample, SupportSeries, SupportWeights, fit_support};
@@ -128,7 +128,7 @@ impl WholeRecord {
     }
 
     /// Windows one after the other, each sought without a first guess, and the integrals of the readings within.
-    fn by_windows(&self, readings: &PalmReadings, experiment: &Experiment) -> Windows {
+    fn by_windows(&self, readings: &PalmMeasurements, experiment: &Experiment) -> Windows {
         let mut found = Windows { samples: Vec::new(), rate: None, gyration: None };
         let length = experiment.scene.observer.window.max(FEWEST_SAMPLES);
         let (mut phi, mut gyrations) = (self.phi, Vec::new());
@@ -190,8 +190,8 @@ fn known_rate(experiment: &Experiment) -> Option<f64> {
     question.guess.iter().find(|(name, _)| name == "omega0").map(|(_, value)| *value)
 }
 
-fn readings(experiment: &Experiment) -> Option<PalmReadings> {
+fn readings(experiment: &Experiment) -> Option<PalmMeasurements> {
     let rows = experiment.signals.times().len();
     let (scene, known) = (&experiment.scene, &experiment.question.known);
-    palm_readings(scene, &experiment.system, known, &experiment.signals, rows).ok()
+    palm_measurements(scene, &experiment.system, known, &experiment.signals, rows).ok()
 }

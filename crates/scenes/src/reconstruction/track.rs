@@ -7,7 +7,7 @@ use super::super::run::{Answer, Experiment};
 use palmistry_bodies::mechanics::Palm;
 use palmistry_bodies::shape::SupportSample;
 use palmistry_math::number::rational_to_f64;
-use palmistry_observe::{Signals, Update, UpdateEnd, WhenBlind};
+use palmistry_observe::{Signals, Update, UpdateEnd, WhenUnobservable};
 use std::f64::consts::FRAC_PI_2;
 
 /// The answer whose outline is shown: of the first method by windows that saw anything, else of the first by windows, else of the first.
@@ -24,7 +24,7 @@ fn sees(update: &Update) -> bool {
 
 /// From when on, in s, windows tell no outline: where a search did not come to its end, or where between windows that see there is one that does not, and nothing else answers
 /// there. The orientation of all later ones hangs on it. A window that is blind and goes on by its equations is none.
-fn hole(answer: &Answer, when_blind: WhenBlind) -> Option<f64> {
+fn hole(answer: &Answer, when_blind: WhenUnobservable) -> Option<f64> {
     let updates = &answer.track.updates;
     let is_answered = |update: &Update| sees(update) && update.end != UpdateEnd::StepsSpent;
     let ends = (updates.iter().position(is_answered), updates.iter().rposition(is_answered));
@@ -35,7 +35,7 @@ fn hole(answer: &Answer, when_blind: WhenBlind) -> Option<f64> {
         let is_unanswered = match update.end {
             UpdateEnd::StepsSpent => true,
             UpdateEnd::Lost(_) => (first..last).contains(place),
-            UpdateEnd::Blind { .. } => when_blind == WhenBlind::Hold && (first..last).contains(place),
+            UpdateEnd::Blind { .. } => when_blind == WhenUnobservable::Hold && (first..last).contains(place),
             _ => false,
         };
         is_unanswered && !updates.iter().any(covers)
@@ -45,7 +45,11 @@ fn hole(answer: &Answer, when_blind: WhenBlind) -> Option<f64> {
 
 /// Why windows tell no outline, in words; none where they do. Between flat palms all measurements at once are asked first: where that comes to nothing, or
 /// windows contradict it, these are believed only if they pass all their tests.
-pub(super) fn no_outline(answer: &Answer, forms: &[Palm<f64>], when_blind: WhenBlind) -> Option<String> {
+pub(super) fn no_outline(
+    answer: &Answer,
+    forms: &[Palm<f64>],
+    when_blind: WhenUnobservable,
+) -> Option<String> {
     if let Some(from) = hole(answer, when_blind) {
         return Some(format!(
             "no outline is estimated from the windows: from {from:.3} s there is no answer"
@@ -313,24 +317,24 @@ mod tests {
             hole(&other, when_blind)
                 .map(|from| answer.track.updates.iter().position(|own| own.from == from).unwrap())
         };
-        assert_eq!(hole(&answer, WhenBlind::Hold), None);
+        assert_eq!(hole(&answer, WhenUnobservable::Hold), None);
         let lost = || UpdateEnd::Lost(Lost { time: 0.0, why: String::new() });
         let blind = || UpdateEnd::Blind { weakest: Vec::new() };
         for place in 0..=last {
             let between = (0 < place && place < last).then_some(place);
-            assert_eq!(hole_with(place, UpdateEnd::StepsSpent, WhenBlind::Integrate), Some(place));
-            assert_eq!(hole_with(place, lost(), WhenBlind::Integrate), between);
-            assert_eq!(hole_with(place, blind(), WhenBlind::Hold), between);
-            assert_eq!(hole_with(place, blind(), WhenBlind::Integrate), None);
+            assert_eq!(hole_with(place, UpdateEnd::StepsSpent, WhenUnobservable::Integrate), Some(place));
+            assert_eq!(hole_with(place, lost(), WhenUnobservable::Integrate), between);
+            assert_eq!(hole_with(place, blind(), WhenUnobservable::Hold), between);
+            assert_eq!(hole_with(place, blind(), WhenUnobservable::Integrate), None);
         }
         let mut none = answer.clone();
         none.track.updates.iter_mut().for_each(|own| own.end = blind());
-        assert_eq!(hole(&none, WhenBlind::Integrate), Some(0.0));
+        assert_eq!(hole(&none, WhenUnobservable::Integrate), Some(0.0));
         // what has grown over it answers there
         let mut covered = answer.clone();
         covered.track.updates[1].end = blind();
         covered.track.updates[2].from = answer.track.updates[1].from;
-        assert_eq!(hole(&covered, WhenBlind::Hold), None);
+        assert_eq!(hole(&covered, WhenUnobservable::Hold), None);
     }
 
     /// The integral of a cosine is the sine; a polynomial of the seventh degree has no error but rounding's.

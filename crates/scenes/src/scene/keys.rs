@@ -6,7 +6,7 @@ use super::robot::{SceneGround, SceneRobot};
 use super::simulated::{Body, LibraryBody};
 use palmistry_bodies::mechanics::moving::{Course, PushedPalm};
 use palmistry_lang::Problem;
-use palmistry_observe::{HighGain, Kalman, Loss, Shooting, Unscented, WhenBlind};
+use palmistry_observe::{HighGain, Kalman, Loss, Shooting, Unscented, WhenUnobservable};
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
@@ -201,7 +201,7 @@ pub(super) struct ObserverKeys {
     #[serde(default = "five")]
     pub steps: usize,
     #[serde(default)]
-    pub when_blind: WhenBlind,
+    pub when_blind: WhenUnobservable,
     #[serde(default = "unity")]
     pub blind: f64,
     #[serde(default = "yes")]

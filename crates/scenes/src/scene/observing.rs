@@ -3,7 +3,7 @@
 use super::simulated::LibraryBody;
 use palmistry_observe::{
     HighGain, Integration, Interpolation, Kalman, Loss, MovingWindow, MultipleShooting, Observer, OnFault,
-    Shooting, Smoother, Unscented, WhenBlind, WindowSearch,
+    Shooting, Smoother, Unscented, WhenUnobservable, WindowSearch,
 };
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
@@ -87,7 +87,7 @@ pub struct ObserverSettings {
     /// `steps`: Newton steps a window; 5 unless given.
     pub steps: usize,
     /// `when_blind`: what to do while the outputs do not tell the state; `"integrate"` unless given.
-    pub when_blind: WhenBlind,
+    pub when_blind: WhenUnobservable,
     /// `blind`: the relative standard deviation (its bound by the size of the state) beyond which a state is not seen;
     /// 1 unless given.
     pub blind: f64,

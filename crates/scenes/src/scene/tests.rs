@@ -2,7 +2,7 @@ mod mistakes;
 
 use super::*;
 use palmistry_bodies::mechanics::moving::{Course, Drive, Knots, Oscillation, PushedPalm};
-use palmistry_observe::{HighGain, Kalman, Loss, OnFault, Shooting, Unscented, WhenBlind};
+use palmistry_observe::{HighGain, Kalman, Loss, OnFault, Shooting, Unscented, WhenUnobservable};
 use std::collections::BTreeMap;
 
 const WHOLE: &str = r#"title = "Both palms turn at one constant rate"
@@ -172,7 +172,7 @@ fn every_key_arrives_where_it_belongs() {
         clamp: vec!["omega0".to_owned()],
         window: 60,
         steps: 4,
-        when_blind: WhenBlind::Hold,
+        when_blind: WhenUnobservable::Hold,
         blind: 0.5,
         inherit: true,
         whole: false,
@@ -211,7 +211,7 @@ fn what_is_not_given_has_its_default() {
     assert_eq!(scene.data, Data::default());
     assert_eq!(scene.observer.guess, Guess::Off(0.1));
     assert_eq!((scene.observer.window, scene.observer.steps, scene.observer.blind), (80, 5, 1.0));
-    assert_eq!(scene.observer.when_blind, WhenBlind::Integrate);
+    assert_eq!(scene.observer.when_blind, WhenUnobservable::Integrate);
     assert_eq!(scene.study, Study::default());
 }
 

@@ -1,11 +1,11 @@
 //! A closed outline through the radii of a track: the same direction touched twice has one radius.
 
 use super::quadrature::SlowTrack;
-use super::readings::SlowReadings;
+use super::readings::SlowMeasurements;
 use palmistry_bodies::shape::{SupportSample, SupportSeries, SupportWeights, fit_support};
 
 /// The normals that a track touched, with their radii.
-pub(super) fn touched(readings: &SlowReadings, track: &SlowTrack) -> Vec<SupportSample> {
+pub(super) fn touched(readings: &SlowMeasurements, track: &SlowTrack) -> Vec<SupportSample> {
     let half = std::f64::consts::FRAC_PI_2;
     let rows = readings.palms.iter().zip(&track.phi0).zip(&track.radii);
     rows.flat_map(|((palms, phi0), radii)| {
@@ -17,7 +17,7 @@ pub(super) fn touched(readings: &SlowReadings, track: &SlowTrack) -> Vec<Support
 
 /// The closed function of an order through a track, and what is left, in parts of the mean radius.
 pub(super) fn closed(
-    readings: &SlowReadings,
+    readings: &SlowMeasurements,
     track: &SlowTrack,
     order: usize,
 ) -> Option<(SupportSeries, f64)> {

@@ -8,7 +8,7 @@
 
 use super::found::{CERTAIN, EXACT, SlowShape};
 use super::outline::Outline;
-use super::readings::SlowReadings;
+use super::readings::SlowMeasurements;
 use super::segments::{JUMP, found_jumps};
 use super::together::Together;
 use std::f64::consts::{PI, TAU};
@@ -21,7 +21,7 @@ const MOST_FITTED: usize = 60;
 
 /// A track without detours, and a shape that was fitted to it.
 pub(super) fn without_detours(
-    readings: &SlowReadings,
+    readings: &SlowMeasurements,
     mut found: SlowShape,
     interrupt: &dyn Fn() -> bool,
 ) -> SlowShape {

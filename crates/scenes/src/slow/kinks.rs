@@ -6,7 +6,7 @@
 
 use super::found::{EXACT, SlowShape};
 use super::outline::{Kink, OF_KINK, Outline};
-use super::readings::SlowReadings;
+use super::readings::SlowMeasurements;
 use super::together::{Point, Together};
 use palmistry_bodies::shape::SupportSeries;
 use std::f64::consts::{PI, TAU};
@@ -69,7 +69,7 @@ fn highest(series: &SupportSeries, known: &[Kink]) -> Kink {
 
 /// A shape again with kinks of its curvature, where harmonics alone leave something of readings that are exact; else as it is.
 pub(super) fn with_kinks(
-    readings: &SlowReadings,
+    readings: &SlowMeasurements,
     found: SlowShape,
     interrupt: &dyn Fn() -> bool,
 ) -> SlowShape {

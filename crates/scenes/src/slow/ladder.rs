@@ -2,7 +2,7 @@
 
 use super::closure::closed;
 use super::found::{EXACT, SlowShape};
-use super::readings::SlowReadings;
+use super::readings::SlowMeasurements;
 use super::together::{Point, Together};
 use palmistry_bodies::shape::SupportSeries;
 
@@ -130,7 +130,7 @@ impl Together<'_> {
 
     /// The same, over longer and longer parts of the readings: what the first ones tell leads the body through the next ones.
     pub fn explain_by_parts(
-        readings: &SlowReadings,
+        readings: &SlowMeasurements,
         start: &SupportSeries,
         near: &[f64],
         orders: Orders,

@@ -1,6 +1,6 @@
 //! Shape from touch with slow palms: chapter 3 of the thesis.
 //!
-//! [`SlowReadings`] are what two slow flat palms read. [`by_thesis`] integrates the thesis's equations from radii that are known, [`by_quadrature`] needs one constant and no derivative of a reading,
+//! [`SlowMeasurements`] are what two slow flat palms read. [`by_thesis`] integrates the thesis's equations from radii that are known, [`by_quadrature`] needs one constant and no derivative of a reading,
 //! [`from_nothing`] needs neither: it explains all readings at once by one closed support function. [`votes`] are the constants that the readings tell by themselves.
 //!
 //! Nothing here has seen the body: what a simulation knows comes in through readings alone.
@@ -33,7 +33,7 @@ pub(crate) use local::derivative;
 pub use outline::Kink;
 pub use patches::Arrangement;
 pub use quadrature::{SlowTrack, by_quadrature};
-pub use readings::SlowReadings;
+pub use readings::SlowMeasurements;
 pub use run::{SlowAnswers, SlowExperiment, SlowTruth, TrackError};
 pub use scene::{SlowPalms, SlowScene, SlowStudy};
 pub use segments::{FoundJump, found_jumps, from_segments};

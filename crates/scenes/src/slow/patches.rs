@@ -2,7 +2,7 @@
 
 use super::closure::touched;
 use super::quadrature::SlowTrack;
-use super::readings::SlowReadings;
+use super::readings::SlowMeasurements;
 use super::segments::FoundJump;
 use super::thesis::{ThesisMethod, by_thesis};
 use std::f64::consts::TAU;
@@ -87,7 +87,7 @@ fn squared(times: &[f64], values: &[f64]) -> f64 {
 
 /// A track cut at jumps, and the thesis's way restarted there from the same radii and orientations.
 pub(super) fn arrangements(
-    readings: &SlowReadings,
+    readings: &SlowMeasurements,
     track: &SlowTrack,
     jumps: &[FoundJump],
 ) -> [Arrangement; 2] {

@@ -6,7 +6,7 @@
 //! it: about every sample a polynomial is fitted to all equations of its neighbours, in which those with a large `d_i` count most.
 
 use super::local::{derivative, integral};
-use super::readings::{Sampled, SlowReadings};
+use super::readings::{Sampled, SlowMeasurements};
 use nalgebra::{DMatrix, DVector, Dyn, SVD};
 use palmistry_math::number::MOST_ITERATIONS;
 
@@ -47,7 +47,7 @@ pub(super) struct Quadrature {
 }
 
 impl Quadrature {
-    pub fn of(readings: &SlowReadings) -> Quadrature {
+    pub fn of(readings: &SlowMeasurements) -> Quadrature {
         let sampled: Vec<Sampled> = (0..readings.rows()).map(|row| readings.sampled(row)).collect();
         let lift: Vec<f64> = sampled.iter().map(Sampled::lift).collect();
         let noise = readings.sigma / readings.scale();
@@ -153,6 +153,6 @@ fn smoothed_slopes(times: &[f64], column: &[f64], window: usize) -> Vec<f64> {
 }
 
 /// Shape and motion by quadrature, from the height of the centre of mass at the first sample.
-pub fn by_quadrature(readings: &SlowReadings, height: f64) -> SlowTrack {
+pub fn by_quadrature(readings: &SlowMeasurements, height: f64) -> SlowTrack {
     Quadrature::of(readings).track(&readings.times, height)
 }

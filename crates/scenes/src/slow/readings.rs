@@ -5,7 +5,7 @@ use std::ops::Range;
 
 /// Readings of both palms at sample times. SI units, angles in radians.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SlowReadings {
+pub struct SlowMeasurements {
     /// When; they increase.
     pub times: Vec<f64>,
     /// `phi1` and `phi2`, sample by sample: palm 1 against the X axis, palm 2 against palm 1.
@@ -85,14 +85,14 @@ impl Sampled {
     }
 }
 
-impl SlowReadings {
+impl SlowMeasurements {
     pub fn rows(&self) -> usize {
         self.times.len()
     }
 
     /// The samples of a stretch.
-    pub(super) fn part(&self, rows: &Range<usize>) -> SlowReadings {
-        SlowReadings {
+    pub(super) fn part(&self, rows: &Range<usize>) -> SlowMeasurements {
+        SlowMeasurements {
             times: self.times[rows.clone()].to_vec(),
             palms: self.palms[rows.clone()].to_vec(),
             rates: self.rates[rows.clone()].to_vec(),

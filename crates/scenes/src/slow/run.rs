@@ -8,7 +8,7 @@ use super::ladder::Orders;
 use super::local::derivative;
 use super::patches::{Arrangement, arrangements};
 use super::quadrature::{SlowTrack, by_quadrature};
-use super::readings::SlowReadings;
+use super::readings::SlowMeasurements;
 use super::scene::SlowScene;
 use super::segments::{FoundJump, found_jumps, from_segments};
 use super::start::{Vote, from_nothing, from_nothing_briefly, votes};
@@ -44,7 +44,7 @@ pub struct SlowExperiment {
     /// None where readings are recorded.
     pub truth: Option<SlowTruth>,
     /// What the palms read.
-    pub readings: SlowReadings,
+    pub readings: SlowMeasurements,
 }
 
 /// How far a track is from the truth: the greatest error of a support radius, in m, and of the orientation, in rad.
@@ -200,7 +200,7 @@ impl SlowExperiment {
 }
 
 /// A shape from few starts; where none explains the readings one for all segments between jumps; where there is none either from all starts.
-fn from_any(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
+fn from_any(readings: &SlowMeasurements, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
     let explains = |found: &SlowShape| found.explains(EXACT);
     from_nothing_briefly(readings, Orders::CHOSEN, interrupt)
         .filter(explains)
@@ -210,7 +210,7 @@ fn from_any(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> Option<Slo
 
 /// What a search found, without harmonics, jumps and unevenness that the readings do not ask for.
 pub(super) fn without_excess(
-    readings: &SlowReadings,
+    readings: &SlowMeasurements,
     found: SlowShape,
     interrupt: &dyn Fn() -> bool,
 ) -> SlowShape {
@@ -240,14 +240,19 @@ pub(super) fn track_error(truth: &Trajectory, track: &SlowTrack) -> Option<Track
 }
 
 /// What palms read of a motion: contacts with normal errors, rounded; the angles as they are.
-pub(super) fn readings_of(trajectory: &Trajectory, noise: f64, resolution: f64, seed: u64) -> SlowReadings {
+pub(super) fn readings_of(
+    trajectory: &Trajectory,
+    noise: f64,
+    resolution: f64,
+    seed: u64,
+) -> SlowMeasurements {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let moments = &trajectory.moments;
     let mut read = |s: f64| {
         let s = s + noise * normal(&mut random);
         if resolution > 0.0 { (s / resolution).round() * resolution } else { s }
     };
-    SlowReadings {
+    SlowMeasurements {
         times: moments.iter().map(|at| at.time).collect(),
         palms: moments.iter().map(|at| at.palms.map(|palm| palm.angle)).collect(),
         rates: moments.iter().map(|at| at.palms.map(|palm| palm.rate)).collect(),
@@ -257,7 +262,7 @@ pub(super) fn readings_of(trajectory: &Trajectory, noise: f64, resolution: f64, 
 }
 
 /// Readings of a file. Rates of the palms are differentiated: the angles are known well.
-fn recorded(scene: &SlowScene, file: &Path) -> Result<SlowReadings, ReadError> {
+fn recorded(scene: &SlowScene, file: &Path) -> Result<SlowMeasurements, ReadError> {
     let names = COLUMNS.map(|name| scene.columns.get(name).map_or(name, String::as_str));
     let mut rules = scene.faults.clone();
     rules.resolution.extend(names[2..].iter().map(|name| ((*name).to_owned(), scene.resolution)));
@@ -291,5 +296,5 @@ fn recorded(scene: &SlowScene, file: &Path) -> Result<SlowReadings, ReadError> {
     }
     let rates = pairs(&derivative(&times, &phi1, 9), &derivative(&times, &phi2, 9));
     let sigma = deviation(scene.noise, scene.resolution);
-    Ok(SlowReadings { rates, contacts: pairs(&s1, &s2), palms, times, sigma })
+    Ok(SlowMeasurements { rates, contacts: pairs(&s1, &s2), palms, times, sigma })
 }

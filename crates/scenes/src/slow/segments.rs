@@ -7,7 +7,7 @@
 use super::found::{CERTAIN, EXACT, SlowShape};
 use super::ladder::Orders;
 use super::outline::Outline;
-use super::readings::SlowReadings;
+use super::readings::SlowMeasurements;
 use super::start::from_nothing_briefly;
 use super::together::Together;
 use palmistry_bodies::mechanics::resting::stable_poses;
@@ -59,7 +59,7 @@ pub struct FoundJump {
 
 /// A stretch of samples that one shape explains, on its way to all.
 struct Growth<'a> {
-    readings: &'a SlowReadings,
+    readings: &'a SlowMeasurements,
     rows: Range<usize>,
     support: SupportSeries,
     /// Of all samples; those outside of the stretch are not meant.
@@ -187,7 +187,7 @@ impl Growth<'_> {
 
 /// Shape and motion of a run with jumps, nothing known: from windows without one. None where no window tells a shape; whether all readings are explained says
 /// [`SlowShape::explains`], and a run that is explained only in part is not.
-pub fn from_segments(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
+pub fn from_segments(readings: &SlowMeasurements, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
     let rows = readings.rows();
     let together = Together::of(readings);
     let mut best: Option<SlowShape> = None;
@@ -271,12 +271,12 @@ fn is_borne_out(together: &Together<'_>, found: &SlowShape, outline: &Outline, [
 /// The palms' way between two samples, as a sample of its own.
 struct Between {
     ends: [[f64; 2]; 2],
-    at: SlowReadings,
+    at: SlowMeasurements,
 }
 
 impl Between {
     /// Between a sample and the one before.
-    fn before(readings: &SlowReadings, row: usize) -> Between {
+    fn before(readings: &SlowMeasurements, row: usize) -> Between {
         Between { ends: [readings.palms[row - 1], readings.palms[row]], at: readings.part(&(row - 1..row)) }
     }
 
@@ -298,7 +298,7 @@ impl Between {
 }
 
 /// Where the body jumps in a track: between two samples the palms are moved on in small steps, and the recovered shape is led along.
-pub fn found_jumps(readings: &SlowReadings, found: &SlowShape) -> Vec<FoundJump> {
+pub fn found_jumps(readings: &SlowMeasurements, found: &SlowShape) -> Vec<FoundJump> {
     let outline = Outline::of(&found.shape.support.coefficients(), 0);
     let phi0 = &found.track.phi0;
     let mut all = Vec::new();

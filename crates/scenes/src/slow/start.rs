@@ -8,7 +8,7 @@ use super::closure::closed;
 use super::found::{EXACT, SlowShape};
 use super::ladder::Orders;
 use super::quadrature::Quadrature;
-use super::readings::SlowReadings;
+use super::readings::SlowMeasurements;
 use super::together::Together;
 
 /// Votes that lie so near, in parts of the mean contact, are for the same constant.
@@ -39,7 +39,7 @@ pub struct Vote {
 }
 
 /// The constants that zeros of the numerator of 3.37 tell, those with most votes first.
-pub fn votes(readings: &SlowReadings) -> Vec<Vote> {
+pub fn votes(readings: &SlowMeasurements) -> Vec<Vote> {
     let quadrature = Quadrature::of(readings);
     let rates = readings.contact_rates(9);
     let rows = readings.rows();
@@ -86,7 +86,7 @@ struct Closed {
 }
 
 /// Heights from which to begin, the best first.
-fn starts(readings: &SlowReadings, quadrature: &Quadrature) -> Vec<f64> {
+fn starts(readings: &SlowMeasurements, quadrature: &Quadrature) -> Vec<f64> {
     let scale = readings.scale();
     let [low, high] = quadrature.heights();
     let low = low.max(-4.0 * scale);
@@ -132,13 +132,13 @@ fn left_height(grid: &[Option<Closed>], i: usize, by: isize) -> Option<f64> {
 
 /// Shape and motion from the readings alone, nothing known at the start: several constants by closure, all readings at once from each, and the residuals of the readings
 /// as the judge. None where no start can be followed; whether the readings are explained says [`SlowShape::explains`].
-pub fn from_nothing(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
+pub fn from_nothing(readings: &SlowMeasurements, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
     from_nothing_within(readings, Orders::CHOSEN, interrupt)
 }
 
 /// The same with orders that are told.
 pub(super) fn from_nothing_within(
-    readings: &SlowReadings,
+    readings: &SlowMeasurements,
     orders: Orders,
     interrupt: &dyn Fn() -> bool,
 ) -> Option<SlowShape> {
@@ -148,7 +148,7 @@ pub(super) fn from_nothing_within(
 
 /// The same with few starts: for a window of which there are many.
 pub(super) fn from_nothing_briefly(
-    readings: &SlowReadings,
+    readings: &SlowMeasurements,
     orders: Orders,
     interrupt: &dyn Fn() -> bool,
 ) -> Option<SlowShape> {
@@ -166,7 +166,7 @@ struct Effort {
 }
 
 fn search(
-    readings: &SlowReadings,
+    readings: &SlowMeasurements,
     orders: Orders,
     effort: &Effort,
     interrupt: &dyn Fn() -> bool,

@@ -4,7 +4,7 @@
 //! A step that comes near divides one error by another.
 
 use super::quadrature::SlowTrack;
-use super::readings::SlowReadings;
+use super::readings::SlowMeasurements;
 use ode_solvers::{Dop853, Dopri5, OutputType, SVector, System};
 use std::cell::Cell;
 
@@ -65,7 +65,7 @@ fn along(state: State, parts: &[(f64, State)]) -> State {
 }
 
 /// Integrates 3.35 to 3.37 from the radii at the first sample, the orientation zero there.
-pub fn by_thesis(readings: &SlowReadings, radii: [f64; 2], method: ThesisMethod) -> ThesisTrack {
+pub fn by_thesis(readings: &SlowMeasurements, radii: [f64; 2], method: ThesisMethod) -> ThesisTrack {
     let start = [radii[0], radii[1], 0.0];
     let (states, stopped) = match method {
         ThesisMethod::PredictorCorrector => (predictor_corrector(readings, start), None),
@@ -108,7 +108,7 @@ pub fn by_thesis(readings: &SlowReadings, radii: [f64; 2], method: ThesisMethod)
 }
 
 /// On uneven times the polynomials' integrals replace the textbook's weights, which are those of even ones.
-fn predictor_corrector(readings: &SlowReadings, start: State) -> Vec<State> {
+fn predictor_corrector(readings: &SlowMeasurements, start: State) -> Vec<State> {
     let times = &readings.times;
     let contact_rates = readings.contact_rates(POINTS);
     let at = |row: usize, state: State| rates(&readings.sampled(row), contact_rates[row], state);
@@ -168,7 +168,7 @@ const MOST_EVALUATIONS: usize = 4000;
 
 /// Time is the last coordinate: Dop853 of ode_solvers 0.6.2 takes zero for the twelfth node of the method, which is one.
 struct Law<'a> {
-    readings: &'a SlowReadings,
+    readings: &'a SlowMeasurements,
     evaluations: &'a Cell<usize>,
 }
 
@@ -186,7 +186,7 @@ impl System<f64, SVector<f64, 4>> for Law<'_> {
 }
 
 /// From sample to sample; the rows that were reached, and why no more.
-fn adaptive(readings: &SlowReadings, start: State, method: ThesisMethod) -> (Vec<State>, Option<String>) {
+fn adaptive(readings: &SlowMeasurements, start: State, method: ThesisMethod) -> (Vec<State>, Option<String>) {
     let mut states = vec![start];
     for ends in readings.times.windows(2) {
         let evaluations = Cell::new(0);

@@ -8,7 +8,7 @@
 use super::found::SlowShape;
 use super::outline::{OF_KINK, Outline};
 use super::quadrature::SlowTrack;
-use super::readings::{Sampled, SlowReadings};
+use super::readings::{Sampled, SlowMeasurements};
 use nalgebra::{DMatrix, DVector};
 use palmistry_bodies::shape::{Measured, ShapeEstimate, SupportSeries, convex_deviation, deviation_of};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -43,7 +43,7 @@ pub(super) struct Point {
 pub(super) struct Together<'a> {
     sampled: Vec<Sampled>,
     angles: Vec<[f64; 2]>,
-    pub readings: &'a SlowReadings,
+    pub readings: &'a SlowMeasurements,
     pub sigma: f64,
     /// A mean radius by which convexity's bounds are measured.
     pub size: f64,
@@ -57,7 +57,7 @@ pub(super) struct Together<'a> {
 pub(super) type Touched = [[f64; 4]; 2];
 
 impl<'a> Together<'a> {
-    pub fn of(readings: &'a SlowReadings) -> Together<'a> {
+    pub fn of(readings: &'a SlowMeasurements) -> Together<'a> {
         let angle = |p: &[f64; 2]| [p[0] - FRAC_PI_2, p[0] + p[1] - 3.0 * FRAC_PI_2];
         let scale = readings.scale();
         Together {

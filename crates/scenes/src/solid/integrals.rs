@@ -1,6 +1,6 @@
 //! The integrals of the readings that the laws are made of, at samples and between them.
 
-use super::SolidReadings;
+use super::SolidMeasurements;
 use super::rule::{POINTS, Piece, piece};
 use super::surface::PalmSample;
 use super::vector::{Vector, along, cross};
@@ -94,7 +94,7 @@ impl Rules {
 }
 
 impl Integrals {
-    pub fn of(readings: &SolidReadings, rules: &Rules) -> Integrals {
+    pub fn of(readings: &SolidMeasurements, rules: &Rules) -> Integrals {
         let samples: Vec<[PalmSample; 3]> = (0..readings.rows()).map(|k| palms_at(readings, k)).collect();
         let sums: Vec<[Vector; 2]> = samples
             .iter()
@@ -162,6 +162,6 @@ impl Integrals {
     }
 }
 
-fn palms_at(readings: &SolidReadings, row: usize) -> [PalmSample; 3] {
+fn palms_at(readings: &SolidMeasurements, row: usize) -> [PalmSample; 3] {
     std::array::from_fn(|i| PalmSample::of(readings, row, i))
 }

@@ -6,14 +6,14 @@ use super::flow::Start;
 use super::integrals::{Integrals, Rules};
 use super::vector::dot;
 use super::whiten::{Deviations, ERRORS, Whitener};
-use super::{SolidReadings, UNKNOWNS};
+use super::{SolidMeasurements, UNKNOWNS};
 
 /// The readings less errors in units of their deviations.
 pub(super) fn corrected(
-    readings: &SolidReadings,
+    readings: &SolidMeasurements,
     errors: &[[f64; ERRORS]],
     deviations: &Deviations,
-) -> SolidReadings {
+) -> SolidMeasurements {
     let mut own = readings.clone();
     for (palms, error) in own.palms.iter_mut().zip(errors) {
         for (i, palm) in palms.iter_mut().enumerate() {
@@ -46,7 +46,7 @@ fn neumann(white: &[[f64; 3]]) -> f64 {
 
 impl Linear {
     pub fn about(
-        readings: &SolidReadings,
+        readings: &SolidMeasurements,
         rules: &Rules,
         deviations: &Deviations,
         start: &Start,

@@ -69,7 +69,7 @@ pub const UNKNOWNS: usize = 16;
 
 /// One palm at one sample. SI units, angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PalmReading {
+pub struct PalmMeasurement {
     /// Where the contact is: along the hinge and up the palm, from the point of the hinge.
     pub place: [f64; 2],
     /// The axis of the hinge, the direction up the palm and the plane's normal towards the body, as columns, in the world.
@@ -82,11 +82,11 @@ pub struct PalmReading {
 
 /// Readings of three palms. SI units.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SolidReadings {
+pub struct SolidMeasurements {
     /// They increase.
     pub times: Vec<f64>,
     /// Sample by sample.
-    pub palms: Vec<[PalmReading; 3]>,
+    pub palms: Vec<[PalmMeasurement; 3]>,
     /// A point of each hinge.
     pub hinges: [Vector3<f64>; 3],
     /// Planes, unless they are said to be spheres.
@@ -201,7 +201,7 @@ impl SolidState {
     }
 }
 
-impl SolidReadings {
+impl SolidMeasurements {
     /// The number of samples.
     pub fn rows(&self) -> usize {
         self.times.len()
@@ -212,7 +212,7 @@ impl SolidReadings {
         let Some(first) = self.palms.first() else { return true };
         let size = first.iter().flat_map(|palm| palm.place).fold(0.0, |most: f64, x| most.max(x.abs()));
         let most = (10.0 * self.contact_deviation).max(1e-9 * size);
-        let still = |palms: &[PalmReading; 3]| {
+        let still = |palms: &[PalmMeasurement; 3]| {
             palms.iter().zip(first).all(|(palm, first)| {
                 palm.rate == 0.0 && (0..2).all(|k| (palm.place[k] - first.place[k]).abs() <= most)
             })

@@ -8,7 +8,7 @@ use super::linearised::{Linear, corrected};
 use super::newton::{About, Settled, Square};
 use super::vector::{PLACES, symmetric};
 use super::whiten::{Deviations, ERRORS};
-use super::{Rival, SolidReadings, SolidState, UNKNOWNS};
+use super::{Rival, SolidMeasurements, SolidState, UNKNOWNS};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use palmistry_math::number::MOST_ITERATIONS;
 
@@ -17,7 +17,7 @@ use palmistry_math::number::MOST_ITERATIONS;
 pub(super) struct Refined {
     pub start: Start,
     /// The readings without the errors that they likely have.
-    pub corrected: SolidReadings,
+    pub corrected: SolidMeasurements,
     pub chi_square: f64,
     /// What derivatives at the corrected readings tell: the covariance of the gradient.
     information: Square,
@@ -46,7 +46,7 @@ const HOPELESS: f64 = 3.0;
 
 /// From a start; none where the method does not come to an end: with whole steps, and where these lead nowhere with damped ones. Where errors are stated Newton's method goes on from there, from what is no end too.
 pub(super) fn refine(
-    readings: &SolidReadings,
+    readings: &SolidMeasurements,
     rules: &Rules,
     from: Start,
     scale: &Scale,
@@ -118,7 +118,7 @@ fn stepped(
 
 impl Refined {
     fn of(
-        readings: &SolidReadings,
+        readings: &SolidMeasurements,
         deviations: &Deviations,
         settled: Settled,
         bent: Option<(Square, bool)>,

@@ -10,7 +10,7 @@ use super::refine::{Refined, refine};
 use super::regular::{Ended, Prior};
 use super::vector::{Vector, along};
 use super::whiten::Deviations;
-use super::{FEWEST, Rival, SolidReadings, UNKNOWNS};
+use super::{FEWEST, Rival, SolidMeasurements, UNKNOWNS};
 use crate::simulation::normal;
 use nalgebra::{Matrix3, Vector3};
 use palmistry_math::number::MOST_ITERATIONS;
@@ -43,7 +43,7 @@ struct Likely {
 }
 
 impl Likely {
-    fn of(readings: &SolidReadings) -> Option<Likely> {
+    fn of(readings: &SolidMeasurements) -> Option<Likely> {
         // the point next to all normals through contacts of the first samples
         let few = (readings.rows() / 20).max(3);
         let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
@@ -102,7 +102,7 @@ impl Likely {
     }
 
     /// The likely part of the record, each twice as long as the one before, and all of it.
-    fn records(&self, readings: &SolidReadings, first: f64) -> Vec<Integrals> {
+    fn records(&self, readings: &SolidMeasurements, first: f64) -> Vec<Integrals> {
         let mut parts = vec![first * self.part];
         while parts[parts.len() - 1] < 1.0 {
             parts.push((2.0 * parts[parts.len() - 1]).min(1.0));
@@ -124,7 +124,7 @@ pub(super) fn chosen(rows: usize, part: f64, samples: usize) -> Vec<usize> {
 }
 
 /// The best that was found.
-pub(super) fn found(readings: &SolidReadings, interrupt: &dyn Fn() -> bool) -> Option<Refined> {
+pub(super) fn found(readings: &SolidMeasurements, interrupt: &dyn Fn() -> bool) -> Option<Refined> {
     if !readings.is_whole() || readings.is_still() {
         return None;
     }
@@ -169,7 +169,7 @@ const APART: f64 = 5.0;
 
 /// What was found until now.
 struct Search<'a> {
-    readings: &'a SolidReadings,
+    readings: &'a SolidMeasurements,
     likely: Likely,
     whole: Rules,
     best: Option<Refined>,
@@ -180,7 +180,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn of(readings: &SolidReadings, likely: Likely) -> Search<'_> {
+    fn of(readings: &SolidMeasurements, likely: Likely) -> Search<'_> {
         let whole = Rules::of(&readings.times, (0..readings.rows()).collect());
         Search { readings, likely, whole, best: None, ends: Vec::new(), astray: 0 }
     }

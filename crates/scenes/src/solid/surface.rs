@@ -1,7 +1,7 @@
 //! The surface of a palm: a plane, or a sphere that is fixed to it and touches it. What the two coordinates of a contact mean.
 
 use super::vector::{Vector, along, cross, dot, scaled};
-use super::{PalmReading, SolidReadings};
+use super::{PalmMeasurement, SolidMeasurements};
 use nalgebra::Vector3;
 
 /// A sphere of the curvature `k` that touches the plane where `d` is zero: `z = -k d^2/(1 + r)`, with the normal `(k d1, k d2, r)`, `r = sqrt(1 - k^2 d^2)`.
@@ -56,16 +56,16 @@ impl PalmSurface {
     }
 }
 
-impl SolidReadings {
+impl SolidMeasurements {
     /// Where palm `i` is touched, in the world.
-    pub(super) fn contact(&self, palms: &[PalmReading; 3], i: usize) -> Vector3<f64> {
+    pub(super) fn contact(&self, palms: &[PalmMeasurement; 3], i: usize) -> Vector3<f64> {
         let place = palms[i].place;
         let [p, q] = place;
         self.hinges[i] + palms[i].frame * Vector3::new(p, q, self.surfaces[i].height(place))
     }
 
     /// The palm's normal there.
-    pub(super) fn normal(&self, palms: &[PalmReading; 3], i: usize) -> Vector3<f64> {
+    pub(super) fn normal(&self, palms: &[PalmMeasurement; 3], i: usize) -> Vector3<f64> {
         if self.surfaces[i].is_flat() {
             return palms[i].frame.column(2).into_owned();
         }
@@ -73,7 +73,7 @@ impl SolidReadings {
     }
 
     /// The lever there about the hinge.
-    pub(super) fn lever(&self, palms: &[PalmReading; 3], i: usize) -> f64 {
+    pub(super) fn lever(&self, palms: &[PalmMeasurement; 3], i: usize) -> f64 {
         self.surfaces[i].lever(palms[i].place)
     }
 }
@@ -96,7 +96,7 @@ pub(super) struct PalmSample {
 }
 
 impl PalmSample {
-    pub fn of(readings: &SolidReadings, row: usize, i: usize) -> PalmSample {
+    pub fn of(readings: &SolidMeasurements, row: usize, i: usize) -> PalmSample {
         let (palm, surface) = (&readings.palms[row][i], &readings.surfaces[i]);
         let [axis, up, plane] =
             [0, 1, 2].map(|k: usize| -> Vector { palm.frame.column(k).into_owned().into() });

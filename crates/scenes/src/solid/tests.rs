@@ -1,5 +1,5 @@
 use super::*;
-use crate::space::{SpaceReadings, SpaceSensor, drawn_scenes, relative_error, true_entries};
+use crate::space::{SpaceMeasurements, SpaceSensor, drawn_scenes, relative_error, true_entries};
 use palmistry_bodies::mechanics::moving::Course;
 use palmistry_bodies::mechanics::spatial::*;
 use std::f64::consts::{FRAC_PI_3, TAU};
@@ -9,9 +9,9 @@ fn held(count: usize, samples: usize) -> Vec<(SpatialScene, Vec<SpatialMoment>)>
     drawn_scenes(5, count, samples, 1.76)
 }
 
-fn readings(scene: &SpatialScene, moments: &[SpatialMoment], noise: f64, seed: u64) -> SolidReadings {
+fn readings(scene: &SpatialScene, moments: &[SpatialMoment], noise: f64, seed: u64) -> SolidMeasurements {
     let sensor = SpaceSensor { noise, ..SpaceSensor::default() };
-    SpaceReadings::of(moments, &sensor, seed).solid(&scene.palms, scene.gravity, &sensor)
+    SpaceMeasurements::of(moments, &sensor, seed).solid(&scene.palms, scene.gravity, &sensor)
 }
 
 fn true_start(truth: &[f64; UNKNOWNS]) -> flow::Start {
@@ -255,7 +255,7 @@ fn what_a_contact_changes_on_a_sphere_is_what_differences_say() {
         palm.rate = 0.3 - 0.2 * k as f64;
     }
     let (omega, speed, centre) = ([0.3, -0.5, 0.7], [0.2, 0.1, -0.4], [-0.4, -0.7, 3.5]);
-    let of = |readings: &SolidReadings, i: usize| {
+    let of = |readings: &SolidMeasurements, i: usize| {
         let palm = surface::PalmSample::of(readings, 40, i);
         let velocity =
             vector::along(&speed, 1.0, &vector::cross(&omega, &vector::along(&palm.contact, -1.0, &centre)));
@@ -323,7 +323,7 @@ fn the_body_was_touched_there() {
 #[test]
 fn what_is_no_record_gives_no_state() {
     let (scene, moments) = held(1, 89).remove(0);
-    let changed = |change: fn(&mut SolidReadings)| {
+    let changed = |change: fn(&mut SolidMeasurements)| {
         let mut readings = readings(&scene, &moments, 0.0, 1);
         change(&mut readings);
         readings.first_state()

@@ -4,7 +4,7 @@
 //! where the one before ended and over twice the time. Centre and velocity follow from radii and constraints of the first sample. What is left is the integral of the three constraints squared, to which the
 //! thesis adds how far its twelve equations for nine numbers of the contacts drift apart.
 
-use super::SolidReadings;
+use super::SolidMeasurements;
 use super::constraint::values;
 use super::flow::Start;
 use super::integrals::{Integrals, Rules};
@@ -48,7 +48,7 @@ const SIMPLEX: [f64; 2] = [0.1, 0.05];
 const STEPS: usize = 400;
 
 struct Sought<'a> {
-    readings: &'a SolidReadings,
+    readings: &'a SolidMeasurements,
     known: &'a KnownSolid,
     from: UnitQuaternion<f64>,
 }
@@ -123,7 +123,7 @@ fn simplex(cost: &dyn Fn(&Six) -> f64, from: Six, size: &Six) -> Six {
     points[0].0
 }
 
-impl SolidReadings {
+impl SolidMeasurements {
     /// The thesis's search with so many draws; none where readings are too few or nothing was found.
     pub fn two_stages(&self, known: &KnownSolid, draws: usize, seed: u64) -> Option<TwoStages> {
         if !self.is_whole() {

@@ -1,7 +1,7 @@
 //! What three palms tell, as sensors and motors tell it: angles of the palms, places of the contacts, torques.
 
 use crate::simulation::normal;
-use crate::solid::{PalmReading, PalmSurface, SolidReadings};
+use crate::solid::{PalmMeasurement, PalmSurface, SolidMeasurements};
 use nalgebra::{Matrix3, Vector3};
 use palmistry_bodies::mechanics::spatial::{SpatialMoment, SpatialPalm};
 use rand::SeedableRng;
@@ -20,7 +20,7 @@ pub struct SpaceSensor {
 
 /// One palm at one sample. SI units, angles in radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PalmTold {
+pub struct PalmAtSample {
     /// The angle from the horizontal, its rate and its acceleration.
     pub angle: f64,
     pub rate: f64,
@@ -33,15 +33,15 @@ pub struct PalmTold {
 
 /// All of it, sample by sample.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SpaceReadings {
+pub struct SpaceMeasurements {
     /// They increase.
     pub times: Vec<f64>,
-    pub palms: Vec<[PalmTold; 3]>,
+    pub palms: Vec<[PalmAtSample; 3]>,
 }
 
-impl SpaceReadings {
+impl SpaceMeasurements {
     /// What is read of a motion: contacts and torques with normal errors, contacts rounded; the palms' motion as it is.
-    pub fn of(moments: &[SpatialMoment], sensor: &SpaceSensor, seed: u64) -> SpaceReadings {
+    pub fn of(moments: &[SpatialMoment], sensor: &SpaceSensor, seed: u64) -> SpaceMeasurements {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let rounded = |place: f64| match sensor.resolution {
             step if step > 0.0 => (place / step).round() * step,
@@ -55,29 +55,34 @@ impl SpaceReadings {
                     _ => palm.torque,
                 };
                 let (angle, rate, acceleration) = (palm.angle, palm.rate, palm.acceleration);
-                PalmTold { angle, rate, acceleration, place, torque }
+                PalmAtSample { angle, rate, acceleration, place, torque }
             })
         };
-        SpaceReadings {
+        SpaceMeasurements {
             times: moments.iter().map(|moment| moment.time).collect(),
             palms: moments.iter().map(&mut told).collect(),
         }
     }
 
     /// The same with where the palms hang and how they are inert, for the estimator.
-    pub fn solid(&self, palms: &[SpatialPalm; 3], gravity: [f64; 3], sensor: &SpaceSensor) -> SolidReadings {
-        let read = |palm: &SpatialPalm, told: &PalmTold| {
+    pub fn solid(
+        &self,
+        palms: &[SpatialPalm; 3],
+        gravity: [f64; 3],
+        sensor: &SpaceSensor,
+    ) -> SolidMeasurements {
+        let read = |palm: &SpatialPalm, told: &PalmAtSample| {
             let ((sa, ca), (s, c)) = (palm.azimuth.sin_cos(), told.angle.sin_cos());
             let axis = Vector3::new(sa, -ca, 0.0);
             let up = Vector3::new(c * ca, c * sa, s);
-            PalmReading {
+            PalmMeasurement {
                 place: told.place,
                 frame: Matrix3::from_columns(&[axis, up, axis.cross(&up)]),
                 rate: told.rate,
                 torque: told.torque - palm.inertia * told.acceleration,
             }
         };
-        SolidReadings {
+        SolidMeasurements {
             times: self.times.clone(),
             palms: self.palms.iter().map(|told| std::array::from_fn(|i| read(&palms[i], &told[i]))).collect(),
             hinges: palms.map(|palm| Vector3::from(palm.hinge)),

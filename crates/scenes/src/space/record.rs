@@ -1,6 +1,6 @@
 //! Readings as a table, for other programs and from them.
 
-use super::readings::{PalmTold, SpaceReadings, surface};
+use super::readings::{PalmAtSample, SpaceMeasurements, surface};
 use super::scene::SpaceScene;
 use crate::slow::derivative;
 use crate::solid::FEWEST;
@@ -38,13 +38,13 @@ const DIFFERENTIATED: [usize; 2] = [1, 2];
 /// A palm's angle is differentiated through so many samples.
 const POINTS: usize = 9;
 
-impl SpaceReadings {
+impl SpaceMeasurements {
     /// The readings as a table that other programs, and this one, read.
     ///
     /// # Errors
     /// None that a simulation brings about.
     pub fn record(&self) -> Result<Record, RecordError> {
-        let value = |told: &PalmTold, k: usize| match k {
+        let value = |told: &PalmAtSample, k: usize| match k {
             0 => told.angle,
             1 => told.rate,
             2 => told.acceleration,
@@ -52,7 +52,7 @@ impl SpaceReadings {
             _ => told.torque,
         };
         let column = |(place, name): (usize, &&str)| {
-            let of = |palms: &[PalmTold; 3]| value(&palms[place / OF_A_PALM], place % OF_A_PALM);
+            let of = |palms: &[PalmAtSample; 3]| value(&palms[place / OF_A_PALM], place % OF_A_PALM);
             ((*name).to_owned(), self.palms.iter().map(of).collect::<Vec<f64>>())
         };
         Record::new(self.times.clone(), COLUMNS.iter().enumerate().map(column).collect())
@@ -62,7 +62,7 @@ impl SpaceReadings {
     ///
     /// # Errors
     /// The file cannot be read, lacks a column, or has a faulty row or too few.
-    pub fn recorded(scene: &SpaceScene, file: &Path) -> Result<SpaceReadings, ReadError> {
+    pub fn recorded(scene: &SpaceScene, file: &Path) -> Result<SpaceMeasurements, ReadError> {
         let name = |place: usize| scene.columns.get(COLUMNS[place]).map_or(COLUMNS[place], String::as_str);
         let is_needed = |place: &usize| !DIFFERENTIATED.contains(&(place % OF_A_PALM));
         let needed: Vec<&str> = (0..COLUMNS.len()).filter(is_needed).map(name).collect();
@@ -96,7 +96,7 @@ impl SpaceReadings {
         }
         let palm = |row: usize, i: usize| {
             let value = |k: usize| columns[OF_A_PALM * i + k][row];
-            PalmTold {
+            PalmAtSample {
                 angle: value(0),
                 rate: value(1),
                 acceleration: value(2),
@@ -104,7 +104,7 @@ impl SpaceReadings {
                 torque: value(5),
             }
         };
-        let palms: Vec<[PalmTold; 3]> =
+        let palms: Vec<[PalmAtSample; 3]> =
             (0..times.len()).map(|row| std::array::from_fn(|i| palm(row, i))).collect();
         for (time, told) in times.iter().zip(&palms) {
             if let Some(i) = (0..3).find(|i| !surface(&scene.palms[*i]).has(told[*i].place)) {
@@ -117,6 +117,6 @@ impl SpaceReadings {
                 return Err(scene.error_at("data", message, help));
             }
         }
-        Ok(SpaceReadings { times, palms })
+        Ok(SpaceMeasurements { times, palms })
     }
 }

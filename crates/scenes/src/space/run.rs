@@ -2,10 +2,10 @@
 
 use super::answers::{PoseError, SpaceUpdate, SpaceVerdict};
 use super::drawn::true_entries;
-use super::readings::SpaceReadings;
+use super::readings::SpaceMeasurements;
 use super::scene::SpaceScene;
 use super::touched::{SpaceShape, chained};
-use crate::solid::{FEWEST, SolidPose, SolidReadings};
+use crate::solid::{FEWEST, SolidMeasurements, SolidPose};
 use nalgebra::{Matrix3, Vector3};
 use palmistry_bodies::mechanics::spatial::{
     ConvexSolid, Orientation, SpatialMoment, SpatialScene, SpatialSceneError, SpatialTrajectory,
@@ -36,7 +36,7 @@ pub struct SpaceExperiment {
     /// None where readings are recorded.
     pub truth: Option<SpaceTruth>,
     /// What the palms tell.
-    pub readings: SpaceReadings,
+    pub readings: SpaceMeasurements,
 }
 
 /// What all of it tells.
@@ -70,7 +70,7 @@ impl SpaceExperiment {
     /// What is wrong with the body, the palms or the file.
     pub fn new(scene: SpaceScene, data: Option<&Path>) -> Result<SpaceExperiment, ReadError> {
         if let Some(file) = data.or(scene.record.as_deref()) {
-            let readings = SpaceReadings::recorded(&scene, file)?;
+            let readings = SpaceMeasurements::recorded(&scene, file)?;
             return Ok(SpaceExperiment { scene, truth: None, readings });
         }
         let truth = simulated(&scene)?;
@@ -82,12 +82,12 @@ impl SpaceExperiment {
             let help = "start in balance (balanced = true), turn body and palms slower, or sample faster";
             return Err(scene.error_at("body", message, help));
         }
-        let readings = SpaceReadings::of(moments, &scene.sensor, scene.seed);
+        let readings = SpaceMeasurements::of(moments, &scene.sensor, scene.seed);
         Ok(SpaceExperiment { scene, truth: Some(truth), readings })
     }
 
     /// The readings with where the palms hang.
-    pub fn solid(&self) -> SolidReadings {
+    pub fn solid(&self) -> SolidMeasurements {
         self.readings.solid(&self.scene.palms, self.scene.gravity, &self.scene.sensor)
     }
 
@@ -123,7 +123,7 @@ impl SpaceExperiment {
                 break;
             }
             let begin = Instant::now();
-            let part = SolidReadings {
+            let part = SolidMeasurements {
                 times: all.times[rows.clone()].to_vec(),
                 palms: all.palms[rows.clone()].to_vec(),
                 ..all.clone()

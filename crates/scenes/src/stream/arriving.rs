@@ -4,7 +4,7 @@ use super::told::{StreamEnd, StreamPiece};
 use crate::groundwork::{Groundwork, Steady};
 use crate::run::{Experiment, unusable};
 use crate::scene::{Scene, SceneError};
-use palmistry_observe::{Fault, OnFault, Record, RecordError, RecordReading, RowStream, STREAM};
+use palmistry_observe::{Fault, OnFault, ReadRecord, Record, RecordError, RowStream, STREAM};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -131,7 +131,7 @@ impl Arriving<'_> {
             Record::new(self.buffer.times[rows.clone()].to_vec(), names.into_iter().zip(columns).collect());
         let record = record.map_err(|error| unusable(&ground.scene, &error))?;
         let began = self.rows.began().map(str::to_owned);
-        let reading = RecordReading { began, ..RecordReading::whole(record) };
+        let reading = ReadRecord { began, ..ReadRecord::whole(record) };
         Experiment::with_readings(ground, reading, None, steady)
     }
 

@@ -1,6 +1,6 @@
 //! The integrals of the readings that the constraint is made of.
 
-use super::PalmReadings;
+use super::PalmMeasurements;
 
 /// One palm at one sample.
 #[derive(Clone, Copy, Debug, Default)]
@@ -113,8 +113,8 @@ fn is_alike(times: &[f64], [before, here]: [usize; 2], [first_before, first]: [u
 
 impl Integrals {
     /// Of a window with at least four samples; none where a contact lies on the hinge or palms are parallel.
-    pub fn of(readings: &PalmReadings) -> Option<Integrals> {
-        let PalmReadings { times, contacts, angles, mass, palms, .. } = readings;
+    pub fn of(readings: &PalmMeasurements) -> Option<Integrals> {
+        let PalmMeasurements { times, contacts, angles, mass, palms, .. } = readings;
         let n = times.len();
         let rule = Rule::of(times);
         let mut samples = vec![Sample::default(); n];

@@ -26,7 +26,7 @@ mod normal;
 mod scene;
 mod search;
 
-pub(super) use scene::{Unguided, palm_readings};
+pub(super) use scene::{Unguided, palm_measurements};
 
 use integrals::Integrals;
 use palmistry_bodies::mechanics::Palm;
@@ -36,7 +36,7 @@ const FEWEST: usize = 12;
 
 /// A window of readings, and what is known. SI units; palms are seen from the world.
 #[derive(Clone, Debug)]
-pub struct PalmReadings {
+pub struct PalmMeasurements {
     /// In s.
     pub times: Vec<f64>,
     /// The palms' forms.
@@ -84,7 +84,7 @@ pub struct FirstState {
     pub misfit: f64,
 }
 
-impl PalmReadings {
+impl PalmMeasurements {
     /// The state at the first sample that explains the readings best among those that were found; none where there are too few
     /// readings, they are not finite, or nothing that has the body between the palms explains them.
     pub fn first_state(&self) -> Option<FirstState> {
@@ -111,14 +111,14 @@ impl PalmReadings {
     }
 }
 
-impl PalmReadings {
+impl PalmMeasurements {
     /// Some of the rows.
     ///
     /// # Panics
     /// When there are no such rows.
-    pub fn rows(&self, rows: std::ops::Range<usize>) -> PalmReadings {
+    pub fn rows(&self, rows: std::ops::Range<usize>) -> PalmMeasurements {
         let cut = |pair: &[Vec<f64>; 2]| [pair[0][rows.clone()].to_vec(), pair[1][rows.clone()].to_vec()];
-        PalmReadings {
+        PalmMeasurements {
             times: self.times[rows.clone()].to_vec(),
             contacts: cut(&self.contacts),
             angles: cut(&self.angles),

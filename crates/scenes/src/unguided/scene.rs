@@ -1,6 +1,6 @@
 //! The first guess of a scene that gives none.
 
-use super::{FirstState, PalmReadings};
+use super::{FirstState, PalmMeasurements};
 use crate::scene::{Scene, SceneError};
 use crate::simulation::{TOUCH, deviation};
 use palmistry_bodies::mechanics::Palm;
@@ -27,7 +27,7 @@ impl Unguided {
         signals: &Signals,
     ) -> Result<Unguided, SceneError> {
         let rows = (scene.observer.window + 1).min(signals.times().len());
-        let readings = palm_readings(scene, system, known, signals, rows).map_err(|name| {
+        let readings = palm_measurements(scene, system, known, signals, rows).map_err(|name| {
             let help = "give it under `known`, hand over a column of that name, or give a first guess";
             refuse(scene, format!("without '{name}' no state is found without a first guess"), help)
         })?;
@@ -68,13 +68,13 @@ fn refuse(scene: &Scene, message: String, help: &str) -> SceneError {
 }
 
 /// The first rows of a scene's readings, with what is known; or the name of what is missing.
-pub(crate) fn palm_readings(
+pub(crate) fn palm_measurements(
     scene: &Scene,
     system: &System,
     known: &BTreeMap<String, f64>,
     signals: &Signals,
     rows: usize,
-) -> Result<PalmReadings, &'static str> {
+) -> Result<PalmMeasurements, &'static str> {
     let constant = |name: &str| {
         let default = || {
             let info = system.symbol_info(system.find_symbol(name)?)?;
@@ -100,7 +100,7 @@ pub(crate) fn palm_readings(
         (form, _) => form,
     };
     let is_sought = |name: &str| scene.observer.estimate.iter().any(|other| other == name);
-    Ok(PalmReadings {
+    Ok(PalmMeasurements {
         times: signals.times()[..rows].to_vec(),
         palms: [form(scene.palm_forms[0], "b1"), form(scene.palm_forms[1], "b2")],
         contacts: [column(TOUCH[0])?, column(TOUCH[1])?],

@@ -27,7 +27,7 @@ fn held(count: usize, is_circular: bool) -> Vec<Experiment> {
 #[test]
 fn the_true_state_leaves_nothing() {
     for experiment in held(12, false).into_iter().chain(held(12, true)) {
-        let readings = experiment.palm_readings().unwrap();
+        let readings = experiment.palm_measurements().unwrap();
         let all = Integrals::of(&readings).unwrap();
         let moment = experiment.simulation.as_ref().unwrap().trajectory.moments[0];
         let gyration = experiment.simulation.as_ref().unwrap().constants["rho"];
@@ -60,7 +60,7 @@ fn states_are_found_without_a_guess() {
 fn arrives(experiment: &Experiment) -> bool {
     let moment = experiment.simulation.as_ref().unwrap().trajectory.moments[0];
     let truth = [moment.palms[0].r, moment.palms[1].r, moment.omega0];
-    let Some(found) = experiment.palm_readings().unwrap().first_state() else { return false };
+    let Some(found) = experiment.palm_measurements().unwrap().first_state() else { return false };
     let found = [found.radii[0], found.radii[1], found.rate];
     found.iter().zip(truth).all(|(found, truth)| (found / truth - 1.0).abs() < 0.01)
 }
@@ -73,8 +73,8 @@ fn errors_are_as_large_as_the_bound() {
     let mut ratios = Vec::new();
     let mut normal = || (0..12).map(|_| draws.between(-0.5, 0.5)).sum::<f64>();
     for experiment in held(6, false).into_iter().chain(held(6, true)) {
-        let whole = experiment.palm_readings().unwrap();
-        let exact = PalmReadings { sigma: Some(1e-5), ..whole };
+        let whole = experiment.palm_measurements().unwrap();
+        let exact = PalmMeasurements { sigma: Some(1e-5), ..whole };
         let moment = experiment.simulation.as_ref().unwrap().trajectory.moments[0];
         let truth = FirstState {
             radii: moment.palms.map(|palm| palm.r),
@@ -108,7 +108,8 @@ fn errors_are_as_large_as_the_bound() {
 fn what_is_known_is_not_sought() {
     for experiment in held(4, false) {
         let gyration = experiment.simulation.as_ref().unwrap().constants["rho"];
-        let readings = PalmReadings { gyration: Some(gyration), ..experiment.palm_readings().unwrap() };
+        let readings =
+            PalmMeasurements { gyration: Some(gyration), ..experiment.palm_measurements().unwrap() };
         let found = readings.first_state().unwrap();
         assert!((found.gyration / gyration - 1.0).abs() < 1e-12);
         let truth = experiment.truth_at(0.0).unwrap();
@@ -118,8 +119,8 @@ fn what_is_known_is_not_sought() {
 
 #[test]
 fn what_is_no_window_gives_no_state() {
-    let whole = held(1, false)[0].palm_readings().unwrap();
-    let changed = |change: fn(&mut PalmReadings)| {
+    let whole = held(1, false)[0].palm_measurements().unwrap();
+    let changed = |change: fn(&mut PalmMeasurements)| {
         let mut readings = whole.clone();
         change(&mut readings);
         readings.first_state()

@@ -10,7 +10,7 @@ use palmistry_lang::System;
 use palmistry_prove::certificate::RegionAnswer;
 use palmistry_prove::claim::Outcome;
 use palmistry_prove::drops::DropAnswer;
-use palmistry_rank::observability::Seen;
+use palmistry_rank::observability::Observability;
 use palmistry_scenes::joint::{JointAnswer, JointExperiments};
 use palmistry_scenes::slow::{SlowAnswers, SlowExperiment};
 use palmistry_scenes::space::{SpaceAnswers, SpaceExperiment};
@@ -66,7 +66,12 @@ impl FileFindings {
         let answer = self.ranks.first()?.answer().ok()?;
         let branch = answer.branches.first()?;
         let found = branch.unknowns.iter().zip(&branch.generic.unknowns);
-        Some(found.filter(|(_, (_, seen))| *seen == Seen::Yes).map(|((name, _), _)| name.clone()).collect())
+        Some(
+            found
+                .filter(|(_, (_, seen))| *seen == Observability::Yes)
+                .map(|((name, _), _)| name.clone())
+                .collect(),
+        )
     }
 
     /// Nothing found yet.

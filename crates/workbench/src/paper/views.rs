@@ -122,8 +122,13 @@ pub(super) fn draw(
         && let Some(view) = map_by_default(system, observable)
         && let Ok(found) = map(system, own.as_deref(), &view, seed)
     {
-        // nobody has asked for it: what cannot be drawn is not missed
-        maps.push(MapFound { view, maps: found });
+        // nobody has asked for it: what cannot be drawn is not missed, nor is one that tells nothing, as where values that are taken by
+        // default are special ones
+        let tells =
+            |(_, map): &(LandscapeRows, Map)| map.deviations.iter().flatten().any(|value| value.is_finite());
+        if found.iter().any(tells) {
+            maps.push(MapFound { view, maps: found });
+        }
     }
     for view in &system.maps {
         match map(system, own.as_deref(), view, seed) {

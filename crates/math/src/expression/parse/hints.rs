@@ -7,11 +7,17 @@ use crate::number::Function;
 pub(super) const PRIME: &str = "' after the state";
 
 /// How it is written here, by what stands at the place and before it.
-const AT_THE_PLACE: [(&str, &str, &str); 27] = [
+const AT_THE_PLACE: [(&str, &str, &str); 33] = [
     ("*", "*", "a power is written with '^', as in x^2"),
     ("/", "/", "a comment begins with '#'"),
     ("=", "=", "an equation has one '=', as in x = y"),
     ("", ":=", "write '=' alone"),
+    (":", "=", "write '=' alone"),
+    ("", "<-", "write '=' alone"),
+    ("", "&", SEVERAL),
+    ("", "~", "write '=': approximately is said by 'within', as in x = 2 within 0.1"),
+    (")", "'", "a prime stands behind the name of a state alone: a derivative along the drift f is L(f, x)"),
+    ("", ")", "this bracket closes none: each ')' needs its '('"),
     ("", "|", "an absolute value is written abs(x), as in abs(omega)"),
     ("", "\\", "write functions and Greek letters without the backslash, as in sin(phi)"),
     ("", "{", "brackets are ( and ); a matrix is written [a, b; c, d]"),
@@ -37,13 +43,18 @@ const AT_THE_PLACE: [(&str, &str, &str); 27] = [
     ("", "\u{b3}", "a power is written with '^', as in x^3"),
 ];
 
+/// Of statements that are to hold together.
+const SEVERAL: &str = "of several statements each is a claim of its own; conditions stand behind 'where', with ',' between them";
+
 /// What may help by what stands at the place.
 fn at_the_place(before: &str, rest: &str) -> Option<String> {
     let line = before.rsplit(ends_a_line).next().unwrap_or_default();
     let fixed = |(left, right, help): &(&str, &str, &str)| {
         (line.ends_with(left) && rest.starts_with(right)).then(|| (*help).to_owned())
     };
-    AT_THE_PLACE.iter().find_map(fixed).or_else(|| decimal_comma(line, rest)).or_else(|| of_words(line, rest))
+    let comma = || rest.starts_with(',').then(|| "an entry ends with its line: leave ',' out".to_owned());
+    let found = AT_THE_PLACE.iter().find_map(fixed).or_else(|| decimal_comma(line, rest));
+    found.or_else(|| of_words(line, rest)).or_else(comma)
 }
 
 fn is_function(name: &str) -> bool {
@@ -66,6 +77,14 @@ fn of_words(line: &str, rest: &str) -> Option<String> {
         return Some(
             "there is no 'if': write max(a, b), min(a, b), abs(a) or sign(a), or a claim for each case with 'where'"
                 .to_owned(),
+        );
+    }
+    if matches!(at_word.as_str(), "and" | "or") || matches!(words.last(), Some(&("and" | "or"))) {
+        return Some(SEVERAL.to_owned());
+    }
+    if matches!(words.last(), Some(&("forall" | "all"))) || matches!(at_word.as_str(), "forall") {
+        return Some(
+            "a claim is about all states and values for which its terms exist: leave 'forall' out".to_owned(),
         );
     }
     if at_word == "at" || words.last() == Some(&"at") {
@@ -105,6 +124,52 @@ fn of_an_entry(words: &[&str], line: &str, rest: &str) -> Option<String> {
         ["claim", of] if is_equation => {
             Some(format!("a claim has a name and a colon, as in claim a: {of} = ..."))
         }
+        [
+            "claim",
+            "observable" | "unobservable" | "identifiable" | "unidentifiable" | "rank" | "solutions",
+        ] => Some(format!(
+            "a claim has a name and a colon, as in claim a: {}...",
+            line.trim_start().split_once(' ').map_or("", |(_, of)| of)
+        )),
+        ["claim", _, word @ ("observable" | "unobservable" | "identifiable" | "unidentifiable"), ..] => {
+            Some(format!("the unknowns stand in brackets, as in {word}(x, y)"))
+        }
+        ["state" | "param" | "angle" | "use" | "output" | "sample" | "assume"] if rest.starts_with(':') => {
+            Some(format!("leave ':' out behind '{}'", words[0]))
+        }
+        ["drift" | "input" | "field", _] if rest.starts_with(':') => {
+            Some("leave ':' out behind the name".to_owned())
+        }
+        ["input", name] if rest.starts_with('(') => {
+            Some(format!("a signal that drives the system is declared, as in known {name}(t)"))
+        }
+        ["state", .., name] if is_equation => {
+            Some(format!("an initial condition is an entry of its own: initial {name} = ..."))
+        }
+        ["state" | "angle", ..] if rest.starts_with('(') => {
+            Some("a state is named alone, without (t)".to_owned())
+        }
+        ["state" | "param" | "angle", .., name] if !named.is_empty() => {
+            Some(format!("names stand with ',' between them, as in {name}, {named}"))
+        }
+        ["param", .., name] if rest.starts_with('[') => {
+            Some(format!("a range is an entry of its own, as in sample {name} in [1, 2]"))
+        }
+        ["sample", .., name] if is_equation || named == "from" => {
+            Some(format!("a range has square brackets, as in {name} in [-1, 1]"))
+        }
+        ["initial", .., name] if rest.starts_with('(') => {
+            Some(format!("as in initial {name} = 1, without brackets"))
+        }
+        ["known" | "unknown", .., name] => {
+            Some(format!("a signal is one of time, as in {} {name}(t)", words[0]))
+        }
+        ["measure" | "measured" | "measurement" | "observe" | "observed" | "y" | "meas"] => {
+            Some("an output is written 'output', as in output x".to_owned())
+        }
+        [name] if line.trim_start() == line && is_equation => Some(format!(
+            "a rate of change is written with a prime, as in {name}' = ..., an abbreviation as let {name} = ..., and an output as output ..."
+        )),
         [] if line.trim().is_empty() && !named.is_empty() => {
             let behind = rest[named.len()..].trim_start_matches('\'').trim_start();
             let is_rate = rest[named.len()..].starts_with('\'') && behind.starts_with('=');

@@ -36,7 +36,7 @@ mod slice;
 mod tests;
 
 use super::Frame;
-use super::generic::{GenericAnswer, Seen, sum_of_errors};
+use super::generic::{GenericAnswer, Observability, sum_of_errors};
 use super::needed::CodistributionError;
 use count::count;
 use dashu::rational::RBig;
@@ -67,7 +67,7 @@ pub struct SolutionsOf {
     /// What it is; nothing of an expression.
     pub kind: Option<UnknownKind>,
     /// Whether it is seen locally.
-    pub local: Seen,
+    pub local: Observability,
     /// The probability of an error in that, as a power of two.
     pub local_error: f64,
     /// What was found.
@@ -165,7 +165,7 @@ pub fn solutions_telling(
             .unknowns
             .iter()
             .find(|(other, _)| other == symbol)
-            .map_or(Seen::Undecided, |(_, seen)| *seen);
+            .map_or(Observability::Undecided, |(_, seen)| *seen);
         found.push(SolutionsOf {
             name: system.symbol_name(*symbol).to_owned(),
             kind: system.unknown_kind(*symbol),
@@ -221,18 +221,18 @@ fn conclude(answer: &mut SolutionsAnswer, counted: &Result<(), String>, generic:
     for of_it in &mut answer.unknowns {
         match (of_it.local, counted) {
             // it is no bound on what is infinite that few were met where it was held
-            (Seen::No, _) => (of_it.solutions, of_it.at_most) = (Solutions::Infinite, None),
-            (Seen::Undecided, _) => {
+            (Observability::No, _) => (of_it.solutions, of_it.at_most) = (Solutions::Infinite, None),
+            (Observability::Undecided, _) => {
                 let why = generic
                     .open
                     .clone()
-                    .unwrap_or_else(|| "it is not known whether it is seen locally".to_owned());
+                    .unwrap_or_else(|| "it is not known whether it is observable locally".to_owned());
                 (of_it.solutions, of_it.at_most) = (Solutions::Undecided(why), None);
             }
-            (Seen::Yes, Err(why)) => {
+            (Observability::Yes, Err(why)) => {
                 (of_it.solutions, of_it.at_most) = (Solutions::Undecided(why.clone()), None);
             }
-            (Seen::Yes, Ok(())) => {
+            (Observability::Yes, Ok(())) => {
                 let least = of_it.at_least.as_ref().map_or(1, |(least, _)| *least);
                 if matches!(of_it.solutions, Solutions::Finite(count) if count < least) {
                     // what is proved stands; the random points were special ones
@@ -250,16 +250,16 @@ fn local_of(
     conditions: &Assignment,
     expression: NodeId,
     generic: &GenericAnswer,
-) -> Result<(Seen, f64), CodistributionError> {
+) -> Result<(Observability, f64), CodistributionError> {
     let mut with_it = system.clone();
     with_it.outputs.push((String::new(), expression));
     with_it.output_guards.push(Vec::new());
     let all = Frame::new(&mut with_it, conditions)?.generic;
     let log2_error = sum_of_errors(generic.log2_error, all.log2_error);
     let seen = match (generic.rank(), all.rank()) {
-        (Some(rank), Some(with_it)) if rank == with_it => Seen::Yes,
-        (Some(_), Some(_)) => Seen::No,
-        _ => Seen::Undecided,
+        (Some(rank), Some(with_it)) if rank == with_it => Observability::Yes,
+        (Some(_), Some(_)) => Observability::No,
+        _ => Observability::Undecided,
     };
     Ok((seen, log2_error))
 }
@@ -273,7 +273,7 @@ fn by_symmetry(model: &Model, answer: &mut SolutionsAnswer) {
     let exchanges = exchanges(model);
     let of_unknowns = model.unknowns.len();
     for (number, of_it) in answer.unknowns.iter_mut().enumerate() {
-        if of_it.local != Seen::Yes {
+        if of_it.local != Observability::Yes {
             continue;
         }
         let values = |maps: &[Exchange]| match model.unknowns.get(number) {

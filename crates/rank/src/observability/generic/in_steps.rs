@@ -2,7 +2,7 @@
 
 use super::probe::{ATTEMPTS, seen_in};
 use super::steps::Steps;
-use super::{GenericAnswer, Seen, conclude, nothing_known};
+use super::{GenericAnswer, Observability, conclude, nothing_known};
 use crate::observability::saturation::Ceiling;
 use palmistry_lang::{Assignment, System};
 use palmistry_math::expression::NodeId;
@@ -16,8 +16,8 @@ pub(super) fn answer_in_steps(
     conditions: &Assignment,
     ceiling: Ceiling,
     asked: &[NodeId],
-) -> (GenericAnswer, Vec<Seen>) {
-    let nothing_known = |why| (nothing_known(system, why), vec![Seen::Undecided; asked.len()]);
+) -> (GenericAnswer, Vec<Observability>) {
+    let nothing_known = |why| (nothing_known(system, why), vec![Observability::Undecided; asked.len()]);
     let (mut answer, _) = nothing_known(String::new());
     let steps = match Steps::new(system, conditions, ceiling == Ceiling::Rests, asked) {
         Ok(steps) => steps,

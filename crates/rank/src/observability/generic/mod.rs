@@ -46,7 +46,7 @@ use rand_chacha::ChaCha8Rng;
 
 /// What is known of one unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Seen {
+pub enum Observability {
     /// It is a function of what is measured, near almost every state.
     Yes,
     /// It can change and nothing that is measured does.
@@ -73,7 +73,7 @@ pub struct GenericAnswer {
     /// How many derivatives of the outputs were needed.
     pub order: usize,
     /// The unknowns in the order of the file, and whether each is seen.
-    pub unknowns: Vec<(Symbol, Seen)>,
+    pub unknowns: Vec<(Symbol, Observability)>,
     /// Of each of them whether it is seen wherever the rank is `at_most`, with the same error.
     pub(crate) seen_at_most: Vec<bool>,
     /// Why the two bounds differ, or nothing more is known.
@@ -104,11 +104,11 @@ pub fn generic_answer_of(
     conditions: &Assignment,
     ceiling: Ceiling,
     asked: &[NodeId],
-) -> (GenericAnswer, Vec<Seen>) {
+) -> (GenericAnswer, Vec<Observability>) {
     if system.time == Time::Discrete {
         return answer_in_steps(system, conditions, ceiling, asked);
     }
-    let unknown = || vec![Seen::Undecided; asked.len()];
+    let unknown = || vec![Observability::Undecided; asked.len()];
     let rests = ceiling == Ceiling::Rests;
     let probe = Probe::asking(system, conditions, asked);
     let columns = probe.equations.columns.clone();
@@ -121,7 +121,7 @@ pub fn generic_answer_of(
         log2_error: f64::NEG_INFINITY,
         rounds: 0,
         order: 0,
-        unknowns: columns.iter().map(|column| (system.states[*column], Seen::Undecided)).collect(),
+        unknowns: columns.iter().map(|column| (system.states[*column], Observability::Undecided)).collect(),
         seen_at_most: vec![false; dimension],
         open: None,
     };
@@ -192,7 +192,7 @@ fn on_orbits(
     asked: &[NodeId],
     answer: &GenericAnswer,
     rng: &mut ChaCha8Rng,
-) -> Option<(GenericAnswer, Vec<Seen>)> {
+) -> Option<(GenericAnswer, Vec<Observability>)> {
     let (probe, around) = orbit::probes(system, conditions, asked);
     if !functions_are_known(&probe.equations) || !functions_are_known(&around.equations) {
         return None;
@@ -221,7 +221,8 @@ fn on_orbits(
 
 /// An answer that says why it says nothing.
 fn nothing_known(system: &System, why: String) -> GenericAnswer {
-    let unknowns: Vec<_> = system.unknowns().into_iter().map(|symbol| (symbol, Seen::Undecided)).collect();
+    let unknowns: Vec<_> =
+        system.unknowns().into_iter().map(|symbol| (symbol, Observability::Undecided)).collect();
     GenericAnswer {
         dimension: unknowns.len(),
         at_least: 0,
@@ -248,7 +249,7 @@ fn conclude(
     bounds: &Result<Rounds, String>,
     known_functions: bool,
     ceiling: Ceiling,
-) -> Vec<Seen> {
+) -> Vec<Observability> {
     let ranks = || best.iter().map(|(rank, _)| *rank);
     let (least, most) = (ranks().min().unwrap_or(0), ranks().max().unwrap_or(0));
     if known_functions {
@@ -295,14 +296,14 @@ fn conclude(
     let told = |place: usize| {
         let by = || best.iter().map(|(_, seen)| seen[place]);
         match known {
-            _ if answer.at_least == answer.dimension => Seen::Yes,
-            true if by().all(|seen| seen) => Seen::Yes,
-            true if !by().any(|seen| seen) => Seen::No,
-            _ => Seen::Undecided,
+            _ if answer.at_least == answer.dimension => Observability::Yes,
+            true if by().all(|seen| seen) => Observability::Yes,
+            true if !by().any(|seen| seen) => Observability::No,
+            _ => Observability::Undecided,
         }
     };
     let all = best.first().map_or(0, |(_, seen)| seen.len());
-    let mut found: Vec<Seen> = (0..all).map(told).collect();
+    let mut found: Vec<Observability> = (0..all).map(told).collect();
     let asked = found.split_off(answer.dimension.min(all));
     answer.unknowns.iter_mut().zip(found).for_each(|((_, seen), found)| *seen = found);
     asked

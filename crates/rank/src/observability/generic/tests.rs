@@ -14,7 +14,7 @@ fn answer(text: &str) -> (System, GenericAnswer) {
 /// The rank by bounds, and the names of what is not seen.
 fn found(text: &str) -> (usize, usize, Vec<String>) {
     let (system, answer) = answer(text);
-    let unseen = answer.unknowns.iter().filter(|(_, seen)| *seen == Seen::No);
+    let unseen = answer.unknowns.iter().filter(|(_, seen)| *seen == Observability::No);
     let unseen = unseen.map(|(symbol, _)| system.symbol_name(*symbol).to_owned()).collect();
     if answer.at_most < answer.dimension {
         assert!(answer.log2_error < -100.0, "{answer:?}");
@@ -162,10 +162,10 @@ fn sequences_are_followed_in_discrete_time() {
         let found = generic_answer(&system, &Assignment::new(), Ceiling::Rests);
         assert_eq!(found.at_least, rank, "{text}: {found:?}");
         assert_eq!(found.is_final(), !seen.starts_with('?'), "{text}: {found:?}");
-        let word = |seen: &Seen| match seen {
-            Seen::Yes => 'y',
-            Seen::No => 'n',
-            Seen::Undecided => '?',
+        let word = |seen: &Observability| match seen {
+            Observability::Yes => 'y',
+            Observability::No => 'n',
+            Observability::Undecided => '?',
         };
         if !seen.is_empty() {
             assert_eq!(found.unknowns.iter().map(|(_, seen)| word(seen)).collect::<String>(), seen, "{text}");
@@ -187,10 +187,10 @@ fn states_that_are_told_by_pi_or_by_functions() {
         let branch = crate::observability::solve_conditions(&mut system, &conditions).unwrap().remove(0);
         let answer = generic_answer(&system, &branch.values, Ceiling::Rests);
         assert_eq!(answer.rank(), expected, "{value}: {answer:?}");
-        let seen: Vec<Seen> = answer.unknowns.iter().map(|(_, seen)| *seen).collect();
+        let seen: Vec<Observability> = answer.unknowns.iter().map(|(_, seen)| *seen).collect();
         match expected {
-            Some(_) => assert_eq!(seen, [Seen::Yes, Seen::No], "{value}"),
-            None => assert_eq!(seen, [Seen::Undecided; 2], "{value}"),
+            Some(_) => assert_eq!(seen, [Observability::Yes, Observability::No], "{value}"),
+            None => assert_eq!(seen, [Observability::Undecided; 2], "{value}"),
         }
     }
 }

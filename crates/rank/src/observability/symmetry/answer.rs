@@ -19,7 +19,7 @@ pub struct FieldComponent {
 
 /// A vector field along which no output changes, proved.
 #[derive(Clone, Debug)]
-pub struct UnseenField {
+pub struct UnobservableField {
     /// Its components that are not zero, in the order of the states.
     pub components: Vec<FieldComponent>,
     /// The proof errs with a probability below `2^log2_error`.
@@ -28,7 +28,7 @@ pub struct UnseenField {
 
 /// A function of several unknowns whose differential lies in the codistribution, proved.
 #[derive(Clone, Debug)]
-pub struct SeenFunction {
+pub struct ObservableFunction {
     /// The function.
     pub value: NodeId,
     /// The same in the notation of the language.
@@ -51,9 +51,9 @@ pub(super) struct UnseenBlock {
 
 /// What is seen and what is not, at almost all states.
 #[derive(Clone, Debug, Default)]
-pub struct UnseenMotions {
+pub struct UnobservableDirections {
     /// Independent fields, at almost all states.
-    pub fields: Vec<UnseenField>,
+    pub fields: Vec<UnobservableField>,
     /// How many further unobservable directions there are, of which no field was found.
     pub fields_missing: usize,
     /// The states that are seen by themselves, in their order.
@@ -61,7 +61,7 @@ pub struct UnseenMotions {
     /// Their names.
     pub seen_names: Vec<String>,
     /// Functions of the other states that are seen, independent of one another.
-    pub functions: Vec<SeenFunction>,
+    pub functions: Vec<ObservableFunction>,
     /// How many further such functions there are.
     pub functions_missing: usize,
     /// Whether polynomials of a low degree were left untried, because they have too many coefficients.
@@ -75,7 +75,7 @@ pub struct UnseenMotions {
     pub(super) blocks: Vec<UnseenBlock>,
 }
 
-impl UnseenMotions {
+impl UnobservableDirections {
     /// How many directions are not seen at almost all states: the dimension less the rank.
     pub fn directions(&self) -> usize {
         self.fields.len() + self.fields_missing

@@ -20,7 +20,7 @@ mod proof;
 mod reparametrise;
 mod section;
 
-pub use self::answer::{FieldComponent, SeenFunction, UnseenField, UnseenMotions};
+pub use self::answer::{FieldComponent, ObservableFunction, UnobservableDirections, UnobservableField};
 pub use self::generators::{IdentifiableFunction, IdentifiableFunctions, identifiable_functions};
 pub use self::reparametrise::{NotReparametrised, reparametrise};
 
@@ -51,7 +51,7 @@ pub fn unseen_motions(
     words: Option<&Codistribution>,
     held: &Assignment,
     given: &Assignment,
-) -> Option<UnseenMotions> {
+) -> Option<UnobservableDirections> {
     if system.time == Time::Discrete {
         return None; // what is proved of the fields is proved of rates
     }
@@ -60,7 +60,7 @@ pub fn unseen_motions(
     let everywhere = Attempt::new(system, words, (given, given.len() == held.len()), &mut rng)
         .filter(|attempt| attempt.is_complete() && attempt.holds_at(system, held, &mut rng));
     match everywhere {
-        Some(attempt) => Some(UnseenMotions { for_all_parameters: true, ..attempt.found }),
+        Some(attempt) => Some(UnobservableDirections { for_all_parameters: true, ..attempt.found }),
         None => Some(Attempt::new(system, words, (held, true), &mut rng)?.found),
     }
 }
@@ -71,7 +71,7 @@ const LONGEST_TEXT: usize = 160;
 const POINTS: usize = 3;
 
 struct Attempt {
-    found: UnseenMotions,
+    found: UnobservableDirections,
     /// The fields, with a component for each state.
     vectors: Vec<Vec<NodeId>>,
 }
@@ -95,7 +95,7 @@ impl Attempt {
             return None;
         }
         let blocks = blocks(&point, &kernel);
-        let found = UnseenMotions { values: values.clone(), ..UnseenMotions::default() };
+        let found = UnobservableDirections { values: values.clone(), ..UnobservableDirections::default() };
         let mut attempt = Attempt { found, vectors: Vec::new() };
         let mut of_blocks: Vec<Vec<FieldTerms>> = Vec::new();
         for block in &blocks {
@@ -198,7 +198,7 @@ impl Attempt {
                     false => None,
                 };
                 match proof {
-                    Some(log2_error) => self.found.functions.push(SeenFunction {
+                    Some(log2_error) => self.found.functions.push(ObservableFunction {
                         value,
                         text: function.text(&system.graph, &source.variables),
                         log2_error: together([log2_error, fields_err]),
@@ -265,7 +265,7 @@ impl Attempt {
             if rank_somewhere(system, &longer, columns.len(), rng) == Some(rank + 1) {
                 rows = longer;
                 let (log2_error, factors) = (log2_error.unwrap_or(f64::NEG_INFINITY), vec![(value, 1)]);
-                self.found.functions.push(SeenFunction { value, text, log2_error, factors });
+                self.found.functions.push(ObservableFunction { value, text, log2_error, factors });
                 self.found.functions_missing -= 1;
                 // it may be one of several blocks
                 self.found.blocks = vec![UnseenBlock {
@@ -375,7 +375,7 @@ fn unseen_field(
     field: &FieldTerms,
     vector: &[NodeId],
     log2_error: f64,
-) -> UnseenField {
+) -> UnobservableField {
     let places = places(system, source);
     let component = |part: &Component| FieldComponent {
         state: source.coordinate(part.column),
@@ -383,7 +383,7 @@ fn unseen_field(
         rate: vector[places[part.column]],
         text: part.text(&system.graph, &source.variables),
     };
-    UnseenField { components: field.components.iter().map(component).collect(), log2_error }
+    UnobservableField { components: field.components.iter().map(component).collect(), log2_error }
 }
 
 fn factor_nodes(

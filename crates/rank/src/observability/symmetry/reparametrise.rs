@@ -1,7 +1,7 @@
 //! A system without what is not seen, written as a proof file: its states are those that are seen by themselves and the functions
 //! that are seen of the others, its claims that these move as the file says and that the outputs are the same.
 
-use super::answer::UnseenMotions;
+use super::answer::UnobservableDirections;
 use super::express::{Ingredient, as_polynomial};
 use super::proof::{Motion, vanish};
 use super::section::sections;
@@ -63,7 +63,7 @@ struct Coordinate {
 /// Where something is missing for that.
 pub fn reparametrise(
     system: &System,
-    found: &UnseenMotions,
+    found: &UnobservableDirections,
     import: &str,
 ) -> Result<String, NotReparametrised> {
     if found.fields_missing + found.functions_missing > 0 {
@@ -136,7 +136,7 @@ fn ingredients(system: &mut System, motion: &Motion, coordinates: &[Coordinate])
 }
 
 /// What is seen by itself, and a new symbol for each function.
-fn coordinates(system: &mut System, found: &UnseenMotions) -> Vec<Coordinate> {
+fn coordinates(system: &mut System, found: &UnobservableDirections) -> Vec<Coordinate> {
     let mut all = Vec::new();
     for symbol in &found.seen {
         let name = system.symbol_name(*symbol).to_owned();
@@ -265,7 +265,7 @@ fn short_text(system: &mut System, node: NodeId) -> Option<String> {
 
 fn text(
     system: &System,
-    found: &UnseenMotions,
+    found: &UnobservableDirections,
     coordinates: &[Coordinate],
     reduced: &Reduced,
     import: &str,

@@ -4,7 +4,7 @@
 //! Where motions that are not seen take a state to the section, nothing that is seen changes on the way; so what the functions say
 //! there of rates and outputs they say everywhere. Whether it is so is proved of the result.
 
-use super::answer::{SeenFunction, UnseenBlock};
+use super::answer::{ObservableFunction, UnseenBlock};
 use palmistry_lang::{Assignment, System};
 use palmistry_math::expression::{NodeId, Symbol};
 
@@ -16,7 +16,7 @@ const MOST_CHOICES: usize = 3000;
 pub(super) fn sections(
     system: &mut System,
     block: &UnseenBlock,
-    functions: &[SeenFunction],
+    functions: &[ObservableFunction],
     names: &[Symbol],
     most: usize,
 ) -> Vec<Assignment> {
@@ -67,11 +67,11 @@ fn subsets(places: usize, size: usize) -> Vec<Vec<usize>> {
 fn solve(
     system: &mut System,
     block: &UnseenBlock,
-    functions: &[SeenFunction],
+    functions: &[ObservableFunction],
     names: &[Symbol],
     mut values: Assignment,
 ) -> Option<Assignment> {
-    let mut open: Vec<(&SeenFunction, Symbol)> = functions.iter().zip(names.iter().copied()).collect();
+    let mut open: Vec<(&ObservableFunction, Symbol)> = functions.iter().zip(names.iter().copied()).collect();
     while !open.is_empty() {
         let mut solved = None;
         for (place, (function, name)) in open.iter().enumerate() {

@@ -6,7 +6,7 @@ use super::super::recognised::{LibraryAnswer, Recognition};
 use super::super::run::Experiment;
 use super::super::scene::{Body, LibraryBody, SceneError};
 use super::super::simulation::{deviation, outline};
-use super::super::unguided::palm_readings;
+use super::super::unguided::palm_measurements;
 use super::record::WholeRecord;
 use palmistry_bodies::mechanics::Palm;
 use palmistry_bodies::mechanics::moving::Shape;
@@ -49,10 +49,11 @@ impl Experiment {
             self.scene.error_at("observer.library", message, "these bodies", help)
         };
         let known = &self.question.known;
-        let readings = palm_readings(&self.scene, &self.system, known, &self.signals, 1).map_err(|name| {
-            let help = "give it under `known`, or hand over a column of that name";
-            place(format!("without '{name}' no body is recognised"), help)
-        })?;
+        let readings =
+            palm_measurements(&self.scene, &self.system, known, &self.signals, 1).map_err(|name| {
+                let help = "give it under `known`, or hand over a column of that name";
+                place(format!("without '{name}' no body is recognised"), help)
+            })?;
         if readings.palms.iter().any(|palm| *palm != Palm::Flat) {
             let message = "bodies are recognised between flat palms, and these are circular";
             return Err(place(message.to_owned(), "leave the library out"));
