@@ -18,6 +18,8 @@ pub struct Findings {
     pub run: usize,
     /// The page with the outputs that were found in the place of those that are not so any more.
     pub renewed: String,
+    /// Whether that is another text.
+    pub has_changed: bool,
 }
 
 /// The pages of the book and the README, in order of their names.
@@ -71,6 +73,7 @@ pub fn go_through(path: &Path, folder: &Path) -> Findings {
     for (span, output) in page.outputs.iter().rev() {
         renewed.replace_range(span.clone(), output);
     }
+    page.found.has_changed = !page.outputs.is_empty();
     page.found.renewed = renewed;
     page.found
 }

@@ -89,6 +89,8 @@ pub(crate) fn decide_codistribution(
     }
     let scope = match words.stop {
         Stop::Full => "",
+        // a bound from below may be known without that
+        _ if !words.is_final() => "",
         _ => ", and higher Lie derivatives do not raise it",
     };
     let rows = Rows { entries: &entries, columns, scope, on: &needed };
