@@ -26,7 +26,7 @@ class ReadError(Error):
     """A text that cannot be read: a proof file, an expression, a scene.
 
     file: its name. line, column: the place, in characters, both counted from one. text: that line. marked: what is marked in it.
-    label: what stands there, in words.
+    label: what stands there, in words. code: as E201; `palmistry explain E201` has an example.
     """
 
     def __init__(
@@ -39,6 +39,7 @@ class ReadError(Error):
         text: str = "",
         marked: str = "",
         label: str = "",
+        code: str = "",
     ) -> None:
         super().__init__(message, help)
         self.file = file
@@ -47,6 +48,7 @@ class ReadError(Error):
         self.text = text
         self.marked = marked
         self.label = label
+        self.code = code
 
     def __str__(self) -> str:
         lines = [f"{self.file}:{self.line}:{self.column}: {self.message}"]

@@ -34,6 +34,7 @@ pub fn unreadable(py: Python<'_>, error: &ReadError) -> PyErr {
     exception(py, "ReadError", |fields| {
         fields.set_item("message", &error.message)?;
         fields.set_item("help", error.help.as_deref())?;
+        fields.set_item("code", error.code.id())?;
         fields.set_item("file", error.source_code.name())?;
         fields.set_item("line", line)?;
         fields.set_item("column", column)?;

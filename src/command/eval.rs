@@ -8,7 +8,7 @@ use clap::Args;
 use dashu::rational::RBig;
 use palmistry::claim::{EvaluationError, evaluate};
 use palmistry::file;
-use palmistry::report::{ValueAsked, expression_latex, how_certain, value_json, value_text};
+use palmistry::report::{ValueAsked, expression_latex_in, how_certain, value_json, value_text};
 use palmistry::{System, ValueError};
 use serde_json::json;
 use std::path::PathBuf;
@@ -59,11 +59,11 @@ impl Eval {
             let mut object =
                 value_json(&ValueAsked { expression: &self.expression, digits, at: &at }, &value);
             if self.latex {
-                object["latex"] = json!(expression_latex(&self.expression, &system.looks));
+                object["latex"] = json!(expression_latex_in(&self.expression, &system.looks));
             }
             print_json(&object)?;
         } else {
-            let formula = self.latex.then(|| expression_latex(&self.expression, &system.looks)).flatten();
+            let formula = self.latex.then(|| expression_latex_in(&self.expression, &system.looks)).flatten();
             let formula = formula.map_or(String::new(), |latex| format!("{latex}\n"));
             print_text(&format!("{formula}{}", value_text(&value)))?;
             // beside the value and not behind it: what is printed is what others read

@@ -30,7 +30,7 @@ impl Explain {
                 let known: Vec<&str> = all().map(Code::id).collect();
                 Unusable::report(
                     format!("there is no code '{id}'"),
-                    &format!("the codes are {}", known.join(", ")),
+                    format!("the codes are {}", known.join(", ")),
                 )
             })?],
         };
@@ -85,14 +85,13 @@ fn page_in_words(code: Code) -> String {
 fn without_links(text: &str) -> String {
     let mut pieces = text.split("](");
     let first = pieces.next().unwrap_or_default().to_owned();
-    let whole = pieces.fold(first, |whole, piece| {
+    pieces.fold(first, |whole, piece| {
         let (words, rest) = (whole.rsplit_once('['), piece.split_once(')'));
         match (words, rest) {
             (Some((before, words)), Some((_, after))) => format!("{before}{words}{after}"),
             _ => format!("{whole}]({piece}"),
         }
-    });
-    whole
+    })
 }
 
 #[cfg(test)]

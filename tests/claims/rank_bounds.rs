@@ -32,10 +32,11 @@ fn rank_of(mut rows: Vec<Vec<i64>>) -> usize {
         };
         rows.swap(rank, pivot);
         let inverse = power(rows[rank][column].rem_euclid(PRIME), PRIME - 2);
-        for below in rank + 1..rows.len() {
-            let factor = rows[below][column] * inverse % PRIME;
-            for at in 0..width {
-                rows[below][at] = (rows[below][at] - factor * rows[rank][at]).rem_euclid(PRIME);
+        let (upper, lower) = rows.split_at_mut(rank + 1);
+        for row in lower {
+            let factor = row[column] * inverse % PRIME;
+            for (entry, above) in row.iter_mut().zip(&upper[rank]) {
+                *entry = (*entry - factor * above).rem_euclid(PRIME);
             }
         }
         rank += 1;

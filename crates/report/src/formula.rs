@@ -74,7 +74,12 @@ pub fn statement_latex_in(text: &str, looks: &Looks) -> Option<String> {
 }
 
 /// An expression in LaTeX; none where the text is no expression.
-pub fn expression_latex(text: &str, looks: &Looks) -> Option<String> {
+pub fn expression_latex(text: &str) -> Option<String> {
+    expression_latex_in(text, &Looks::default())
+}
+
+/// The same with the looks that a file gives to its names.
+pub fn expression_latex_in(text: &str, looks: &Looks) -> Option<String> {
     expression_formula(text, looks).map(|formula| latex(&formula))
 }
 

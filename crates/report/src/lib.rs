@@ -55,7 +55,10 @@ pub use claims::{
 };
 #[doc(hidden)]
 pub use formula::definition_mathml;
-pub use formula::{expression_latex, formula_mathml, formula_mathml_in, statement_latex, statement_latex_in};
+pub use formula::{
+    expression_latex, expression_latex_in, formula_mathml, formula_mathml_in, statement_latex,
+    statement_latex_in,
+};
 #[doc(hidden)]
 pub use joint::{JointObserved, joint_json, joint_page, joint_parameters, joint_simulation, joint_text};
 #[doc(hidden)]
