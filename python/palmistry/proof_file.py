@@ -196,12 +196,10 @@ class System:
 
     def codistribution(self, order):
         """The differentials of the outputs, and of what they are along at most so many fields that move the system."""
-        rows = last = self.seen()
+        words = [self.seen()]
         for _ in range(int(single(order).args[0])):
-            last = [self[name].along[x] for name in self.names["moving"] for x in last]
-            spend(len(last))
-            rows = rows + last
-        return self.differentials(Matrix((x,) for x in rows))
+            words.append([self[name].along[x] for name in self.names["moving"] for x in words[-1]])
+        return self.differentials(Matrix((x,) for of_one_length in words for x in of_one_length))
 
     def unit(self, column):
         return self.known.setdefault((column, "unit"), derivation(lambda name: number(name == column)))

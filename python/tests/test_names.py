@@ -70,6 +70,7 @@ COMMANDS = {
     "plan": (["run"], {"--data": "run", "--out": "run"}),
     "new": (["run"], {}),
     "demo": (["run"], {}),
+    "explain": (["run"], {}),
     "fmt": (["System.formatted"], {"--check": "*compare `System.formatted` with `System.source`*"}),
 }
 

@@ -594,7 +594,7 @@ class Damage(Folder):
         for module in ("recheck", "proof_parser", "proof_file", "graph", "multiplied"):
             with open(os.path.join(os.path.dirname(recheck.__file__), module + ".py"), encoding="utf-8") as file:
                 lines += sum(1 for _ in file)
-        self.assertLessEqual(lines, 1390)
+        self.assertLessEqual(lines, 1400)
 
 
 if __name__ == "__main__":
