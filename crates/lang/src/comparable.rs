@@ -63,6 +63,13 @@ impl System {
             let message = "'on sample' is said of numbers; a rank is the generic one";
             return Err(Problem::new(Code::Statement, &statement.span, message, "this claim"));
         }
+        let first = if is_rank(&values.0) { relation } else { relation.turned() };
+        let mut relations = std::iter::once(first).chain(statement.further.iter().map(|one| one.relation));
+        if statement.except.is_some() && bounds_a_rank && relations.any(Relation::points_up) {
+            let message = "a rank is nowhere greater than it is generically: 'everywhere' and 'except where' take rank = n or rank >= n";
+            return Err(Problem::new(Code::Statement, &statement.span, message, "this claim")
+                .help("claim the bound from above without them"));
+        }
         if statement.except.is_some() && !of_a_rank {
             let message =
                 "'everywhere' and 'except where' are said of a rank: all else is claimed wherever it exists";

@@ -310,11 +310,21 @@ impl System {
                 return Err(self.unknown(&name.text, &name.span, Wanted::Name));
             }
             let Some(look) = FormulaName::of_latex(latex) else {
-                let message = format!("'{latex}' is no letter with accents and an index");
+                let shown: String = latex.chars().take(40).collect();
+                let message = format!("'{shown}' is no letter with accents and an index");
                 return Err(Problem::new(Code::View, span, message, "how it looks").help(
-                    "as in \"F_{yf}\", \"\\alpha_f\" or \"\\dot{x}_1\"; words stand in \\mathrm{...}",
+                    "as in \"F_{yf}\", \"\\alpha_f\" or \"\\dot{x}_1\", without superscripts; words stand in \\mathrm{...}",
                 ));
             };
+            let look_of = |name: &str| self.looks.get(name).cloned().or_else(|| FormulaName::of(name));
+            let names = self.symbols.keys().map(|symbol| self.symbol_name(*symbol));
+            let mut names = names.chain(self.definitions.keys().map(String::as_str));
+            let alike = names.find(|other| *other != name.text && look_of(other).as_ref() == Some(&look));
+            if let Some(other) = alike {
+                let message = format!("'{other}' looks so, and is something else");
+                return Err(Problem::new(Code::View, span, message, "two names of one look")
+                    .help("choose another look"));
+            }
             if Arc::make_mut(&mut self.looks).insert(name.text.clone(), look).is_some() {
                 let message = format!("'{}' has a look already", name.text);
                 return Err(Problem::new(Code::Twice, &name.span, message, "the second time"));

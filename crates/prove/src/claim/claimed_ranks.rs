@@ -39,7 +39,7 @@ impl ClaimedRanks {
             return Err(format!("a rank is never {number}"));
         }
         if least > most {
-            return Err("no rank is both".to_owned());
+            return Err(if relations.len() == 1 { "no rank is so low" } else { "no rank is both" }.to_owned());
         }
         let number =
             |bound: i64| if bound == i64::MAX { usize::MAX } else { usize::try_from(bound).unwrap_or(0) };

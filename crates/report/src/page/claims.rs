@@ -12,7 +12,7 @@ use palmistry_workbench::paper::Numbering;
 pub(super) fn tally(outcomes: &[&Outcome]) -> Markup {
     let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
     html! {
-        p { b { (outcomes.len()) } " claims" @if failed > 0 { ", " b.bad { (failed) " not as expected" } } @else { ", all as expected" } ":" }
+        p { b { (outcomes.len()) } @if outcomes.len() == 1 { " claim" } @else { " claims" } @if failed > 0 { ", " b.bad { (failed) " not as expected" } } @else { ", all as expected" } ":" }
         ul.tally {
             @for (word, count) in counts(outcomes.iter().copied()) {
                 li data-w=(word) title=(meaning(word)) { b { (count) } " " span.v { (word) } }

@@ -73,9 +73,14 @@ fn letters(system: &System) -> Markup {
     let is_coordinate = |symbol: &Symbol| system.states.contains(symbol);
     let constants = system.symbols().filter(|(_, info)| info.kind == Kind::Parameter);
     let constants = constants.map(|(symbol, _)| symbol).filter(|symbol| !is_coordinate(symbol)).collect();
-    let kinds: [(&str, Vec<Symbol>); 5] = [
+    // a state whose initial condition is known is a state
+    let signals: Vec<Symbol> = system.signal_chains().into_iter().flatten().collect();
+    let (known_signals, known_at_first): (Vec<Symbol>, Vec<Symbol>) =
+        of(None).into_iter().partition(|symbol| signals.contains(symbol));
+    let kinds: [(&str, Vec<Symbol>); 6] = [
         ("states", of(Some(UnknownKind::State))),
-        ("known", of(None)),
+        ("states with a known initial condition", known_at_first),
+        ("known signals", known_signals),
         ("unknown constants", of(Some(UnknownKind::Parameter))),
         ("unknown signals", of(Some(UnknownKind::Signal))),
         ("known constants", constants),
@@ -95,7 +100,6 @@ fn letters(system: &System) -> Markup {
                 }
             }
             "."
-            @if !system.initial_conditions().is_empty() { " Some initial conditions are known." }
         }
     }
 }
@@ -108,7 +112,11 @@ fn definition(name: &str, text: &str, looks: &Looks) -> Markup {
 }
 
 fn formula(text: &str, looks: &Looks) -> Markup {
-    match formula_mathml_in(text, looks).filter(|_| text.len() <= LONGEST) {
+    // what an index runs through is no formula
+    let has_an_index =
+        text.split('[').skip(1).any(|behind| behind.starts_with(|c: char| c.is_ascii_alphabetic()));
+    let is_range = has_an_index && !text.starts_with('[');
+    match formula_mathml_in(text, looks).filter(|_| text.len() <= LONGEST && !is_range) {
         Some(formula) => PreEscaped(formula),
         None => html! { code { (cut(text)) } },
     }

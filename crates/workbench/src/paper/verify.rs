@@ -332,7 +332,7 @@ impl Run<'_> {
             let stress = || stress(system, seed, interrupt);
             self.keep(place, "the extremes", stress, |file, found| file.stress = Some(found));
             let certify = || certify_region(&mut system.clone(), SUB_BOXES, interrupt);
-            self.keep(place, "the sample box", certify, |file, found| file.certificate = Some(found));
+            self.keep(place, "certified boxes", certify, |file, found| file.certificate = Some(found));
         }
     }
 }

@@ -52,8 +52,7 @@ const INDICES: [&str; 19] = [
 ];
 
 /// Two letters that are a word or a difference, and no letter with an index.
-const NO_INDEX: [&str; 14] =
-    ["dt", "dx", "dy", "dz", "ds", "dq", "du", "dv", "go", "no", "id", "is", "of", "to"];
+const NO_INDEX: [&str; 12] = ["dt", "dx", "dy", "dz", "ds", "dq", "du", "dv", "go", "no", "of", "to"];
 
 /// Where the index of a name begins whose letter and index are written in one, as people write `ia`, `Lq`, `Fyf`, `alphaf`, `Vmax`. A rule
 /// of thumb: a word is no letter with an index, and where it is taken for one a file may say how the name looks.
@@ -86,6 +85,9 @@ fn index_within(letters: &str) -> Option<usize> {
     };
     is_one.then_some(first.len())
 }
+
+/// A look is no longer than this, in bytes.
+const LONGEST_LOOK: usize = 80;
 
 /// A letter of LaTeX by its name here.
 fn letter(latex: &str) -> Option<String> {
@@ -193,6 +195,9 @@ impl FormulaName {
     /// The look that LaTeX gives a name, of as much of LaTeX as names need: a letter (`F`, `\\alpha`, `\\mathrm{Re}`), perhaps below accents
     /// (`\\dot{x}`), perhaps with an index (`F_{yf}`, `\\alpha_f`). None where it is anything else.
     pub fn of_latex(text: &str) -> Option<FormulaName> {
+        if text.len() > LONGEST_LOOK {
+            return None;
+        }
         let mut name =
             FormulaName { from: Vec::new(), letters: String::new(), index: Vec::new(), accents: Vec::new() };
         let (base, index) = match text.split_once('_') {
@@ -205,6 +210,9 @@ impl FormulaName {
             Some((accent, inside))
         }) {
             name.accents.insert(0, accent);
+            if name.accents.len() > 2 {
+                return None;
+            }
             base = inside.trim();
         }
         let is_word = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_alphabetic());

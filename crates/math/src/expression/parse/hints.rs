@@ -7,7 +7,7 @@ use crate::number::Function;
 pub(super) const PRIME: &str = "' after the state";
 
 /// How it is written here, by what stands at the place and before it.
-const AT_THE_PLACE: [(&str, &str, &str); 33] = [
+const AT_THE_PLACE: [(&str, &str, &str); 34] = [
     ("*", "*", "a power is written with '^', as in x^2"),
     ("/", "/", "a comment begins with '#'"),
     ("=", "=", "an equation has one '=', as in x = y"),
@@ -17,7 +17,8 @@ const AT_THE_PLACE: [(&str, &str, &str); 33] = [
     ("", "&", SEVERAL),
     ("", "~", "write '=': approximately is said by 'within', as in x = 2 within 0.1"),
     (")", "'", "a prime stands behind the name of a state alone: a derivative along the drift f is L(f, x)"),
-    ("", ")", "this bracket closes none: each ')' needs its '('"),
+    ("=", ">", "write '>='"),
+    ("=", "<", "write '<='"),
     ("", "|", "an absolute value is written abs(x), as in abs(omega)"),
     ("", "\\", "write functions and Greek letters without the backslash, as in sin(phi)"),
     ("", "{", "brackets are ( and ); a matrix is written [a, b; c, d]"),
@@ -52,9 +53,20 @@ fn at_the_place(before: &str, rest: &str) -> Option<String> {
     let fixed = |(left, right, help): &(&str, &str, &str)| {
         (line.ends_with(left) && rest.starts_with(right)).then(|| (*help).to_owned())
     };
-    let comma = || rest.starts_with(',').then(|| "an entry ends with its line: leave ',' out".to_owned());
+    let ends = |behind: &str| {
+        let behind = behind.trim_start_matches(' ');
+        behind.is_empty() || behind.starts_with(ends_a_line)
+    };
+    let comma = || {
+        let is_last = rest.strip_prefix(',').is_some_and(ends);
+        is_last.then(|| "an entry ends with its line: leave ',' out".to_owned())
+    };
+    let closes = || {
+        let is_more = rest.starts_with(')') && line.matches(')').count() >= line.matches('(').count();
+        is_more.then(|| "this bracket closes none: each ')' needs its '('".to_owned())
+    };
     let found = AT_THE_PLACE.iter().find_map(fixed).or_else(|| decimal_comma(line, rest));
-    found.or_else(|| of_words(line, rest)).or_else(comma)
+    found.or_else(closes).or_else(|| of_words(line, rest)).or_else(comma)
 }
 
 fn is_function(name: &str) -> bool {
@@ -85,6 +97,16 @@ fn of_words(line: &str, rest: &str) -> Option<String> {
     if matches!(words.last(), Some(&("forall" | "all"))) || matches!(at_word.as_str(), "forall") {
         return Some(
             "a claim is about all states and values for which its terms exist: leave 'forall' out".to_owned(),
+        );
+    }
+    if at_word == "where" && words.last() == Some(&"everywhere") {
+        return Some("'where' and its conditions stand before 'everywhere'".to_owned());
+    }
+    let is_fault = |word: &&str| matches!(*word, "erratum" | "damaged" | "scan" | "convention" | "loose");
+    if (at_word == "at" || words.contains(&"at")) && words.first().is_some_and(is_fault) {
+        return Some(
+            "where it stands is a text in quotation marks behind its name, as in erratum 4.2 at \"page 57\": ..."
+                .to_owned(),
         );
     }
     if at_word == "at" || words.last() == Some(&"at") {
@@ -161,8 +183,12 @@ fn of_an_entry(words: &[&str], line: &str, rest: &str) -> Option<String> {
         ["initial", .., name] if rest.starts_with('(') => {
             Some(format!("as in initial {name} = 1, without brackets"))
         }
-        ["known" | "unknown", .., name] => {
-            Some(format!("a signal is one of time, as in {} {name}(t)", words[0]))
+        ["known" | "unknown", .., name] => Some(format!(
+            "a signal is one of time, as in {0} {name}(t); a constant is declared as in param {name} {0}",
+            words[0]
+        )),
+        ["param", .., name] if rest.starts_with(['<', '>']) => {
+            Some(format!("what is assumed of it is an entry of its own, as in assume {name} > 0"))
         }
         ["measure" | "measured" | "measurement" | "observe" | "observed" | "y" | "meas"] => {
             Some("an output is written 'output', as in output x".to_owned())
