@@ -91,7 +91,7 @@ def solutions(binary, path, limit):
         return "refused"
     seen = [one for one in json.loads(run.stdout)["unknowns"] if is_seen(one["local"])]
     if not seen:
-        return "nothing is seen"
+        return "nothing is observable"
     if any(not isinstance(one["values"], int) for one in seen):
         return f"undecided, {took}"
     word = "proved" if all(one["verdict"] == "proved" for one in seen) else "computed"

@@ -108,8 +108,8 @@ SEEN = indices(TenStates, "s1 s2 phi1 omega1 phi2 omega2")
 
 JOBS = {
     "matrix": Job("ten states: matrix", TenStates, TEN_ROWS, tuple(range(10))),
-    "block": Job("verdict, peers told of the 4x4 block", TenStates, TEN_ROWS, UNSEEN, "block"),
-    "whole": Job("verdict, all ten rows handed over", TenStates, TEN_ROWS, tuple(range(10)), "whole", SEEN),
+    "block": Job("verdict, peers given the 4x4 block", TenStates, TEN_ROWS, UNSEEN, "block"),
+    "whole": Job("verdict, all ten rows given", TenStates, TEN_ROWS, tuple(range(10)), "whole", SEEN),
     "same_rate": Job("same rate: matrix", SameRate, SAME_ROWS, tuple(range(6))),
     "order8": Job("gradient of Lg1^8 s1", TenStates, (("s1", ("g1",) * 8),), tuple(range(10))),
 }

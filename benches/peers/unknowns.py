@@ -34,7 +34,7 @@ SIZES = [15, 24, 60, 100, 150, 200, 300]
 CURVES = {  # what the families are called in the book
     "ring": "ring of oscillators, one output",
     "chain": "chain of compartments, one input, one output",
-    "lotka_volterra": "Lotka-Volterra, all species seen",
+    "lotka_volterra": "Lotka-Volterra, all species measured",
     "masses": "masses between springs, one input, one output",
     "goodwin": "feedback loop, one output",
     "two_inputs": "two inputs on every state, one output",

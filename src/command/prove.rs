@@ -19,8 +19,9 @@ use std::time::Instant;
 ///
 /// Exit status 0 only when each claim has the verdict that its file expects: 'claim' proved (or what 'expect' says),
 /// 'erratum' with the printed form refuted and the corrected one proved, and likewise 'damaged', 'scan', 'convention' and
-/// 'loose'. A claim whose sides are one expression is 'restated' and not 'proved', which is as expected. A claim is about all values of its symbols, whatever
-/// values the file gives to parameters; where the verdict at these is another one, that is said too.
+/// 'loose'. A claim whose two sides are one expression 'holds by definition'; it is not called 'proved', and is as expected. A claim
+/// is about all values of its symbols, whatever values the file gives to parameters; where the verdict at these values differs,
+/// the program says so.
 #[derive(Args, Clone)]
 #[command(after_help = "Examples:
   palmistry prove mysystem.proof            each claim with its verdict

@@ -3,7 +3,7 @@
 
 use palmistry::observability::Observability;
 use palmistry::paper::Paper;
-use palmistry::report::{DiagramGround, NodeVerdict, structure_picture};
+use palmistry::report::{DiagramGround, structure_picture};
 use palmistry::sweep::BranchAnswer;
 use palmistry::{RankQuestion, System, answer_rank};
 use std::fmt::Write;
@@ -45,15 +45,7 @@ fn in_code(text: &str) -> String {
 
 impl Gallery {
     fn diagram(&mut self, name: &str, system: &System, branch: &BranchAnswer) {
-        let verdict = |wanted: &str| {
-            let all = branch.unknowns.iter().zip(&branch.generic.unknowns);
-            match all.filter(|((name, _), _)| name == wanted).map(|(_, (_, seen))| *seen).next() {
-                Some(Observability::Yes) => NodeVerdict::Observable,
-                Some(Observability::No) => NodeVerdict::Unobservable,
-                _ => NodeVerdict::Open,
-            }
-        };
-        match structure_picture(system, &verdict, DiagramGround::Alone) {
+        match structure_picture(system, Some(branch), DiagramGround::Alone) {
             Some(picture) => {
                 let file = format!("{name}.svg");
                 let _ = writeln!(self.page, "![Diagram of {name}](pictures/gallery/{file})\n");

@@ -25,8 +25,8 @@ fn three(role: &str) -> String {
 
 #[test]
 fn a_field_that_is_only_differentiated_along_raises_no_rank() {
-    assert_eq!(words(&three("field")), ["restated", "proved"]);
-    assert_eq!(words(&three("input")), ["restated", "refuted"]);
+    assert_eq!(words(&three("field")), ["holds by definition", "proved"]);
+    assert_eq!(words(&three("input")), ["holds by definition", "refuted"]);
     let folder = folder();
     for (role, rank, fields) in [
         ("field", 2, serde_json::json!([{ "name": "f", "role": "drift" }])),
@@ -95,7 +95,7 @@ fn a_rank_without_drift_and_input_is_refused() {
         assert!(message.contains("line 4: 'field f'") && message.contains("drift f"), "{command}: {message}");
     }
     // what needs no rank reads the file as it is
-    assert_eq!(words(&format!("{text}claim 1: L(f, x) = y")), ["restated"]);
+    assert_eq!(words(&format!("{text}claim 1: L(f, x) = y")), ["holds by definition"]);
     // no field at all: the claim is marked, and what to write is said
     let text = "system \"s\"\nstate x\noutput x\nclaim 1: rank = 1";
     let error = System::parse("test.proof", text, Path::new("")).unwrap_err();
@@ -223,7 +223,7 @@ fn no_claim_hides_below_a_comment() {
         assert!(message.contains(&format!("U+{:04X}", mark as u32)), "{message}");
         assert_eq!(place, (2, 11));
     }
-    assert_eq!(words("\u{feff}system \"s\" param x claim 1: x = x"), ["restated"]);
+    assert_eq!(words("\u{feff}system \"s\" param x claim 1: x = x"), ["holds by definition"]);
 }
 
 /// A value in a file is what `rank` takes; a claim is about all values, and says where that makes a difference. With k = 0
@@ -248,7 +248,7 @@ fn a_value_in_a_file_is_never_part_of_a_claim() {
         found[..5],
         [
             ("rank", "proved", Some("refuted")),
-            ("same", "restated", None),
+            ("same", "holds by definition", None),
             ("wrong", "refuted", None),
             ("given", "proved", None),
             ("zero", "proved", None),

@@ -235,7 +235,7 @@ fn answers_are_given_part_by_part() {
     );
     let branch = &found.branches[0];
     assert_eq!((branch.generic_rank, branch.is_final, branch.full.certified), (2, true, 40));
-    let direction = &branch.full.unseen[0];
+    let direction = &branch.full.unobservable[0];
     assert_eq!((&direction.states, direction.count), (&vec!["a".to_owned(), "b".to_owned()], 40));
     assert_eq!(direction.vector.iter().map(ToString::to_string).collect::<Vec<_>>(), ["1", "-1"]);
 }

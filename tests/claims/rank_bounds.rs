@@ -211,6 +211,22 @@ fn orders_are_those_of_sampled_ranks() {
     }
 }
 
+/// Bounds that leave one number are bounds: the checkers know equations of ranks alone, and no verdict on a bound is bound to one.
+#[test]
+fn bounds_that_come_to_a_number_are_not_checked() {
+    let folder = crate::common::folder();
+    let text = "system \"edges\"\nstate x, y\ndrift f  x' = y  y' = 0\noutput x\nclaim a: rank([0, 0]) <= 0\nclaim b: 2 <= rank <= 2\n\
+                claim c: 1 <= rank([x, y; 2*x, 2*y]) <= 1\nclaim d: rank([0, 0]) < 1\nclaim e: rank([0, 0]) >= 0\n\
+                claim f expect refuted: rank < 1 where x = 0\nclaim g: rank >= 0 everywhere\n";
+    let file = crate::common::write(&folder, "edges.proof", text);
+    let verdicts = folder.path().join("v.json").display().to_string();
+    let proved = crate::common::palmistry(&["prove", file.to_str().unwrap(), "--verdicts", &verdicts]);
+    assert!(proved.status.success(), "{}", String::from_utf8_lossy(&proved.stdout));
+    let checked = crate::common::palmistry(&["recheck", &verdicts]);
+    let text = String::from_utf8_lossy(&checked.stdout).into_owned();
+    assert!(checked.status.success() && text.contains("7 verdicts: 7 not checked"), "{text}");
+}
+
 /// What cannot be meant is refused where it stands.
 #[test]
 fn what_is_no_bound_and_no_order() {
@@ -221,6 +237,8 @@ fn what_is_no_bound_and_no_order() {
         ("output x claim a: 1 <= rank <= 2 everywhere", "nowhere greater"),
         ("output x claim a: 3 >= rank except where x = 0", "nowhere greater"),
         ("output x latex x \"y\"", "looks so"),
+        ("output x latex x \"z\" param z", "looks so"),
+        ("output x latex x \"z\", y \"z\"", "looks so"),
         ("output x latex x \"\\dot{\\dot{\\dot{x}}}\"", "no letter with accents"),
         ("output x claim a: rank(codistribution(-1)) = 2", "greatest number of fields"),
         ("output x claim a: rank(codistribution(1/2)) = 2", "greatest number of fields"),
@@ -230,7 +248,10 @@ fn what_is_no_bound_and_no_order() {
         ("output x output 0 = x*y claim a: rank(codistribution(1)) = 2", "outputs that are zero"),
         ("output x let m = codistribution(1) output y", "does not know of this output"),
         ("output x let m = codistribution(1) input g x' = 0 y' = 1", "does not know of this field"),
-        ("output x claim a: rank >= x", ""),
+        ("output x claim a: rank >= x", "whole number"),
+        ("output x claim a: rank = 3/2", "whole number"),
+        ("output x claim a: 1 <= rank <= x", "whole number"),
+        ("output x let n = 1 + 1 claim a: rank([x, y]) >= n - 1", ""),
     ] {
         let parsed: Result<System, _> = format!("{head}{rest}").parse();
         match parsed {
@@ -238,10 +259,31 @@ fn what_is_no_bound_and_no_order() {
             Ok(file) => {
                 let outcomes = prove(&file);
                 assert!(
-                    why.is_empty() && outcomes.iter().all(|outcome| outcome.word() == "undecided"),
+                    why.is_empty() && outcomes.iter().all(|outcome| outcome.word() == "proved"),
                     "{rest}: {outcomes:?}"
                 );
             }
         }
+    }
+    // few rows, and each of very many entries
+    let many = "system \"t\" state x[1..2000] drift f others' = 0 output x[1], x[2] claim a: rank(codistribution(40)) = 2";
+    let error = many.parse::<System>().unwrap_err().to_string();
+    assert!(error.contains("more than 65536 entries"), "{error}");
+}
+
+/// A rank that no matrix of this size has is refuted wherever the matrix exists, with 'everywhere' as without.
+#[test]
+fn more_than_a_matrix_can_have() {
+    let file = system(
+        "system \"s\" param x, y
+         claim a expect refuted: rank([x, y]) >= 2 everywhere
+         claim b expect refuted: rank([x, y]) = 2 everywhere
+         claim c expect refuted: rank([x, y]) = 3 except where x = 0
+         claim d expect refuted: rank([x; y; x*y]) > 1 everywhere
+         claim e expect refuted: rank([x, y]) >= 2
+         claim f: rank([x, y]) >= 1 except where x = 0, y = 0",
+    );
+    for outcome in prove(&file) {
+        assert!(outcome.ok, "{}: {:?}", outcome.id, outcome.verdict);
     }
 }

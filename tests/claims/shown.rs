@@ -39,8 +39,8 @@ fn proved_and_shown(model: &str, claims: &[String]) -> Vec<(bool, bool)> {
 #[test]
 fn models_by_hand_are_shown_as_they_are() {
     let (mut shown, mut all) = (0, 0);
-    for (model, seen, unseen) in MODELS {
-        let functions = seen.iter().map(|one| (one, true)).chain(unseen.iter().map(|one| (one, false)));
+    for (model, seen, unobservable) in MODELS {
+        let functions = seen.iter().map(|one| (one, true)).chain(unobservable.iter().map(|one| (one, false)));
         for (function, is_seen) in functions {
             let (function, conditions) = function.split_once(" where ").unwrap_or((function, ""));
             let given = if conditions.is_empty() { String::new() } else { format!(" where {conditions}") };

@@ -83,10 +83,10 @@ pub(crate) const MODELS: [(&str, &[&str], &[&str]); 15] = [
 
 #[test]
 fn what_is_seen_by_hand() {
-    for (model, seen, unseen) in MODELS {
+    for (model, seen, unobservable) in MODELS {
         let mut claims = Vec::new();
         for (list, word, other) in
-            [(seen, "observable", "unobservable"), (unseen, "unobservable", "observable")]
+            [(seen, "observable", "unobservable"), (unobservable, "unobservable", "observable")]
         {
             for function in list {
                 let (function, given) = match function.split_once(" where ") {
@@ -157,11 +157,11 @@ fn a_motor_at_standstill() {
 /// of its own.
 #[test]
 fn an_output_that_is_seen_adds_no_rank() {
-    for (model, seen, unseen) in MODELS {
+    for (model, seen, unobservable) in MODELS {
         if model.contains("initial") || model.contains("+ =") || model.contains("output 0") {
             continue; // there derivatives of the function tell more than itself
         }
-        let functions = seen.iter().map(|one| (one, true)).chain(unseen.iter().map(|one| (one, false)));
+        let functions = seen.iter().map(|one| (one, true)).chain(unobservable.iter().map(|one| (one, false)));
         for (function, is_seen) in functions.filter(|(function, _)| !function.contains("where")) {
             let rank = |model: &str| {
                 let claims: Vec<String> = (0..8).map(|n| format!("rank = {n}")).collect();

@@ -28,15 +28,15 @@ fn outcomes(text: &str) -> Vec<Outcome> {
 #[test]
 fn what_is_written_down_twice_is_not_proved() {
     for (word, statement) in [
-        ("restated", "L(f, x) = y"),
-        ("restated", "L(f, y) = -x*k"),
-        ("restated", "L(f, point) = [y; rate]"),
-        ("restated", "L(f, [x, y, phi]) = [y, -k*x, 1]"),
-        ("restated", "d(y) = [0, 1, 0]"),
-        ("restated", "energy = y^2*m/2"),
-        ("restated", "half = energy/2"),
-        ("restated", "slope = L(f, energy)"),
-        ("restated", "x + y = x + y"),
+        ("holds by definition", "L(f, x) = y"),
+        ("holds by definition", "L(f, y) = -x*k"),
+        ("holds by definition", "L(f, point) = [y; rate]"),
+        ("holds by definition", "L(f, [x, y, phi]) = [y, -k*x, 1]"),
+        ("holds by definition", "d(y) = [0, 1, 0]"),
+        ("holds by definition", "energy = y^2*m/2"),
+        ("holds by definition", "half = energy/2"),
+        ("holds by definition", "slope = L(f, energy)"),
+        ("holds by definition", "x + y = x + y"),
         // differentiated, multiplied out, taken at a point, under a condition, by an identity of sines
         ("proved", "L(f, energy) = -k*m*x*y"),
         ("proved", "slope = -k*m*x*y"),
@@ -55,7 +55,7 @@ fn what_is_written_down_twice_is_not_proved() {
         assert_eq!(found.word(), word, "{statement}: {:?}", found.verdict);
         // the engine that says so, and no other word, speaks of one expression
         let says_so = format!("{:?}", found.verdict).contains("the two sides are one expression");
-        assert_eq!(says_so, word == "restated", "{statement}: {:?}", found.verdict);
+        assert_eq!(says_so, word == "holds by definition", "{statement}: {:?}", found.verdict);
         assert_eq!(found.ok, word != "refuted", "{statement}");
     }
 }
@@ -68,16 +68,19 @@ fn a_claim_says_on_what_it_rests() {
          claim d example: energy at {y = 2} = 2*m claim e consequence: flat = 1 definition f.text: \"f\"",
     );
     let words: Vec<&str> = found.iter().map(Outcome::word).collect();
-    assert_eq!(words, ["proved", "restated", "consequence", "example", "refuted", "definition"]);
+    assert_eq!(words, ["proved", "holds by definition", "consequence", "example", "refuted", "definition"]);
     assert_eq!(
         found.iter().map(|outcome| outcome.ok).collect::<Vec<_>>(),
         [true, true, true, true, false, true]
     );
     let expected: Vec<&str> = found.iter().map(Outcome::expected_word).collect();
-    assert_eq!(expected, ["proved", "restated", "consequence", "example", "consequence", "definition"]);
+    assert_eq!(
+        expected,
+        ["proved", "holds by definition", "consequence", "example", "consequence", "definition"]
+    );
     assert_eq!(
         counts_text(&found),
-        "1 proved, 1 restated, 1 definition, 1 consequence, 1 example, 1 refuted"
+        "1 proved, 1 holds by definition, 1 definition, 1 consequence, 1 example, 1 refuted"
     );
 }
 
@@ -188,7 +191,7 @@ fn the_words_of_the_thesis() {
     for claim in &claims {
         let word = claim["verdict"].as_str().unwrap();
         *words.entry(word).or_default() += 1;
-        if word == "restated" {
+        if word == "holds by definition" {
             assert!(!claim["restates"].as_array().unwrap().is_empty(), "{claim}");
         }
         if word == "proved" {
@@ -232,7 +235,7 @@ fn the_words_of_the_thesis() {
         ("6.3", "definition"),
         ("5.6", "consequence"),
         ("3.44", "consequence"),
-        ("4.45", "restated"),
+        ("4.45", "holds by definition"),
     ] {
         assert_eq!(word(id), expected, "{id}");
     }

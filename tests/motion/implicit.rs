@@ -124,7 +124,7 @@ fn the_bound_is_that_of_the_readings() {
     }
 }
 
-/// Over 200 seeds errors are as large as the bounds, with errors of the bearing, and of the speeds beside it; and the misfit is what noise
+/// Over 200 seeds errors are as large as the bounds, with errors of the bearing, and of the speeds beside it; and the residual is what noise
 /// explains.
 #[test]
 fn errors_are_as_large_as_their_bounds() {

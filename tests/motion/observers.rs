@@ -146,7 +146,7 @@ fn a_filter_ends_near_the_truth() {
         Task::new(&system(OSCILLATOR), &question(&[("v", -1.0), ("w", 2.5)]), &signals, &NEVER).unwrap();
     let track = Kalman { prior: 0.1, process_noise: 1e-6, least_sigma: 1e-6 }.observe(&task);
     assert!((track.last().unwrap().state[1] - truth[2]).abs() < 1e-4, "{:?}", track.last());
-    assert_eq!(track.unseen, 0);
+    assert_eq!(track.unobserved, 0);
 }
 
 /// An oscillator about an unknown place of rest: its canonical form (x, v, -w^2 x + b) exists everywhere.
@@ -173,7 +173,7 @@ fn a_high_gain_observer_forgets_its_first_guess() {
         let left = 100.0 * (15.0 * moment.time).powi(2) * (-15.0 * moment.time).exp() + 1e-9;
         assert!((moment.state[1] - 4.0 * place).abs() < left, "{moment:?}");
     }
-    assert_eq!(track.unseen, 0);
+    assert_eq!(track.unobserved, 0);
     assert_eq!(track.remarks, ["canonical form: the outputs and their derivatives, 3 coordinates"]);
 }
 
@@ -197,7 +197,7 @@ fn what_cannot_be_told_apart_is_said_to_be_unseen() {
     // the two differ against each other, in units of their sizes 1 and 3
     assert!((weakest[0]).abs() < 1e-6 && (weakest[1] + 3.0 * weakest[2]).abs() < 1e-6, "{weakest:?}");
     assert_eq!(track.updates[0].estimate, [-1.1, 1.0, 3.0]);
-    assert_eq!(track.unseen, 59);
+    assert_eq!(track.unobserved, 59);
 }
 
 #[test]

@@ -35,10 +35,10 @@ fn published_models_have_their_answers() {
             continue;
         }
         assert!(answer.log2_error < -100.0, "{name}: {answer:?}");
-        let unseen = answer.unknowns.iter().filter(|(_, seen)| *seen == Observability::No);
-        let unseen: BTreeSet<String> =
-            unseen.map(|(symbol, _)| system.symbol_name(*symbol).to_owned()).collect();
-        assert_eq!(unseen, expected.not_seen, "{name}");
+        let unobservable = answer.unknowns.iter().filter(|(_, seen)| *seen == Observability::No);
+        let unobservable: BTreeSet<String> =
+            unobservable.map(|(symbol, _)| system.symbol_name(*symbol).to_owned()).collect();
+        assert_eq!(unobservable, expected.not_seen, "{name}");
         assert!(answer.unknowns.iter().all(|(_, seen)| *seen != Observability::Undecided), "{name}");
     }
     // where functions are met that may satisfy relations, series alone bound the rank from above

@@ -75,9 +75,9 @@ fn the_radii_are_unseen_where_the_object_does_not_turn() {
     let found = rank(&[SAME_RATE, "--samples", "100", "--at", "omega0=0"]);
     assert_eq!(found["rank_histogram"], json!({ "4": 100 }));
     assert_eq!(found["certified"], 100);
-    let unseen: Vec<&Value> =
+    let unobservable: Vec<&Value> =
         found["unobservable"].as_array().unwrap().iter().map(|u| &u["example"]).collect();
-    assert_eq!(unseen, ["r1", "r2"]);
+    assert_eq!(unobservable, ["r1", "r2"]);
 }
 
 /// Several conditions in one `--where` are what several of one condition are.

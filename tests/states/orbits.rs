@@ -1,16 +1,23 @@
 //! Ranks where initial conditions are numbers: by hand, and on drawn systems beside the derivatives of the outputs up to a high order, by power series with
 //! derivatives along the unknowns in arithmetic of their own.
 
+use palmistry::expression::Symbol;
+use palmistry::sweep::RankPreparation;
 use palmistry::{RankQuestion, System, answer_rank};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::sync::atomic::AtomicBool;
 
-/// At least, at most and the number of unknowns.
+/// At least, at most and the number of unknowns. States that are drawn have the same rank.
 fn rank(text: &str) -> (usize, usize, usize) {
     let mut system: System =
         format!("system \"s\" {text}").parse().unwrap_or_else(|error| panic!("{error:?} {text}"));
-    let answer = answer_rank(&mut system, &RankQuestion { samples: 0, ..RankQuestion::default() }).unwrap();
+    let answer = answer_rank(&mut system, &RankQuestion { samples: 3, ..RankQuestion::default() }).unwrap();
     let generic = &answer.branches[0].generic;
+    let ranks: Vec<usize> = answer.branches[0].full.rank_histogram.keys().copied().collect();
+    if generic.at_least == generic.at_most {
+        assert!(ranks.iter().all(|rank| *rank == generic.at_least), "{text}: {ranks:?} at drawn states");
+    }
     (generic.at_least, generic.at_most, generic.dimension)
 }
 
@@ -103,8 +110,19 @@ enum Begin {
     Any,
 }
 
-/// The rank of the gradients of the output's Taylor coefficients by what is asked for.
+/// The rank of the gradients of the output's Taylor coefficients by what is asked for, of as many of them as tell all that any does.
 fn by_series(rates: &[Polynomial], output: &Polynomial, begin: &[Begin], rng: &mut ChaCha8Rng) -> usize {
+    by_coefficients(ORDERS, rates, output, begin, rng)
+}
+
+/// The same of so many coefficients.
+fn by_coefficients(
+    orders: usize,
+    rates: &[Polynomial],
+    output: &Polynomial,
+    begin: &[Begin],
+    rng: &mut ChaCha8Rng,
+) -> usize {
     let states = rates.len();
     let wanted = begin.iter().filter(|begin| !matches!(begin, Begin::Known(_))).count();
     let zero = vec![0; 1 + wanted];
@@ -149,7 +167,7 @@ fn by_series(rates: &[Polynomial], output: &Polynomial, begin: &[Begin], rng: &m
         sum
     };
     let mut rows: Vec<Vec<u64>> = Vec::new();
-    for k in 0..ORDERS {
+    for k in 0..orders {
         rows.push(coefficient(&series, output, k)[1..].to_vec());
         let inverse = power(k as u64 + 1, PRIME - 2);
         let next: Vec<Dual> = rates
@@ -265,9 +283,10 @@ fn drawn_systems_on_sets() {
         all += 1;
         let mut system: System = format!("system \"s\" {}", drawn.text).parse().unwrap();
         let conditions = noughts.iter().map(|place| format!("x{place} = 0")).collect();
-        let question = RankQuestion { samples: 0, conditions, ..RankQuestion::default() };
+        let question = RankQuestion { samples: 3, conditions, ..RankQuestion::default() };
         let answer = answer_rank(&mut system, &question).unwrap();
         let generic = &answer.branches[0].generic;
+        let ranks: Vec<usize> = answer.branches[0].full.rank_histogram.keys().copied().collect();
         let begin = (0..drawn.initial.len()).map(|place| match noughts.contains(&place) {
             true => Begin::At(0),
             false => Begin::Any,
@@ -277,9 +296,44 @@ fn drawn_systems_on_sets() {
         let text = format!("{}\n{noughts:?} are nought", drawn.text);
         let (at_least, at_most) = (generic.at_least, generic.at_most);
         assert!(at_least <= shown && shown <= at_most, "{text}\nfrom {at_least} to {at_most}, and {shown}");
+        assert!(ranks.iter().all(|rank| *rank == shown), "{text}: {ranks:?} at drawn states, and {shown}");
         decided += usize::from(at_least == at_most);
         low += usize::from(at_least == at_most && shown < begin.len());
     }
     println!("{decided} of {all} decided, {low} below full rank");
     assert!(decided * 100 >= all * 80 && low >= 80, "{decided} of {all}, {low}");
+}
+
+/// States that are handed over with noughts among their coordinates: by the derivatives that suffice at almost all states these tell less than by all.
+#[test]
+fn states_with_noughts_that_are_handed_over() {
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let (mut higher, mut all) = (0, 0);
+    for _ in 0..300 {
+        let Some(drawn) = drawn(&mut rng) else { continue };
+        let mut system: System = format!("system \"s\" {}", drawn.text).parse().unwrap();
+        let constants: Vec<u64> = (0..drawn.constants).map(|_| rng.random_range(1..=5)).collect();
+        let begin = drawn.initial.iter().chain(&constants).map(|value| Begin::At(*value)).collect::<Vec<_>>();
+        let shown = by_series(&drawn.rates, &drawn.output, &begin, &mut rng);
+        let question = RankQuestion::default();
+        let Ok(prepared) = RankPreparation::new(&mut system, &question) else { continue };
+        let Ok(given) = prepared.at_given_states(&mut system) else { continue };
+        let value = |symbol: &Symbol| -> f64 {
+            let name = system.symbol_name(*symbol);
+            let place: usize = name[1..].parse().unwrap();
+            let list = if name.starts_with('x') { &drawn.initial } else { &constants };
+            list[place] as f64
+        };
+        let values: Vec<[f64; 1]> = given.coordinates().iter().map(|symbol| [value(symbol)]).collect();
+        let slices: Vec<&[f64]> = values.iter().map(<[f64; 1]>::as_slice).collect();
+        let rows = given.decide(&slices, &AtomicBool::new(false)).unwrap().unwrap();
+        let Some(found) = rows[0].rank else { continue };
+        all += 1;
+        assert_eq!(found, shown, "{}\nat {:?} {constants:?}", drawn.text, drawn.initial);
+        // at almost all states no derivative beyond these tells anything
+        let few = by_coefficients(begin.len(), &drawn.rates, &drawn.output, &begin, &mut rng);
+        higher += usize::from(few < shown);
+    }
+    println!("{all} states, at {higher} of them derivatives of higher order raise the rank");
+    assert!(all > 200 && higher >= 5, "{all} {higher}");
 }

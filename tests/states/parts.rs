@@ -22,7 +22,7 @@ fn systems() -> Vec<(&'static str, String, Vec<&'static str>)> {
             vec![],
         ),
         (
-            "two parts by the sign of z, with another direction unseen on each",
+            "two parts by the sign of z, with another direction unobservable on each",
             "system \"s\" state x, y, z, w drift f x' = 0 y' = 0 z' = 0 w' = 0
              output x + y, (z - abs(z))*w, z*x sample x in [-1, 1] y in [-1, 1] z in [-1, 1] w in [-1, 1]"
                 .to_owned(),

@@ -1,7 +1,8 @@
 //! A system as its file has it, for those who read it: rates and outputs with their abbreviations, and not what these come to.
 
 use super::model::{Role, System, Time};
-use super::written::Mention;
+use super::syntax::ClaimBody;
+use super::written::{Insert, Mention, Place, Scope, places_in_equation};
 use std::collections::{HashSet, VecDeque};
 
 /// A vector field as it is written, or a map.
@@ -26,15 +27,64 @@ pub struct SystemAsWritten {
     pub definitions: Vec<(String, String)>,
 }
 
+/// What names stand for, as it is written: name and text of each.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Explanations {
+    /// Definitions: `name = text`.
+    pub definitions: Vec<(String, String)>,
+    /// Fields along which something is differentiated; the text is a list of `x' = rate`.
+    pub fields: Vec<(String, String)>,
+}
+
 impl System {
+    /// What the names in the statements of a claim stand for: definitions and fields, and those that they mention in turn,
+    /// in the order in which they are met; imported ones under the names that they have here.
+    pub fn explanations(&self, body: &ClaimBody) -> Explanations {
+        let states = || self.column_names();
+        let is_definition = |name: &str| self.definitions.contains_key(name);
+        let scope = Scope { source: &self.source, is_definition: &is_definition, states: &states };
+        let mut places = Vec::new();
+        for statement in body.statements() {
+            for equation in statement.all_equations() {
+                places_in_equation(&scope, equation, &mut places);
+            }
+        }
+        places.sort_by_key(|(span, _)| span.start);
+        let mention = |(_, insert): Place| match insert {
+            Insert::Mention(mention) => Some(mention),
+            Insert::States(_) => None,
+        };
+        let mut waiting: VecDeque<Mention> = places.into_iter().filter_map(mention).collect();
+        let mut found = Explanations::default();
+        let mut met = HashSet::new();
+        while let Some(mention) = waiting.pop_front() {
+            if !met.insert(mention.clone()) {
+                continue;
+            }
+            let (list, name, written) = match mention {
+                Mention::Definition(name) => (&mut found.definitions, name.clone(), self.written.get(&name)),
+                Mention::Field(name) => {
+                    let field = self.field(&name);
+                    (&mut found.fields, name, field.map(|field| &field.written))
+                }
+            };
+            if let Some(written) = written {
+                list.push((name, written.text()));
+                waiting.extend(written.mentions());
+            }
+        }
+        found
+    }
+
     /// The system as its file has it.
     pub fn as_written(&self) -> SystemAsWritten {
         let outputs: Vec<String> = self.outputs.iter().map(|(text, _)| text.clone()).collect();
-        let fields = self.fields.iter().filter(|field| field.name != "signals").map(|field| FieldAsWritten {
+        let fields = self.fields.iter().map(|field| FieldAsWritten {
             name: field.name.clone(),
             role: field.role,
             rates: rates(&field.written.text(), if self.time == Time::Discrete { '+' } else { '\'' }),
         });
+        // the drift that is made for signals stands in no file
         let fields: Vec<FieldAsWritten> = fields.filter(|field| !field.rates.is_empty()).collect();
         let of_fields = self.fields.iter().flat_map(|field| field.written.mentions());
         let of_outputs = outputs.iter().flat_map(|text| names(text));

@@ -2,12 +2,13 @@
 
 use super::codes::Code;
 use super::error::Problem;
+use super::matrices::LARGEST_MATRIX;
 use super::model::{Matrix, System, Time, Value};
 use dashu::integer::IBig;
 use palmistry_math::expression::syntax::{Expr, ExprKind, Span};
 use palmistry_math::expression::{NodeId, gradient};
 
-/// No more rows are written down.
+/// No more rows are written down, nor a matrix of more entries than any other has.
 const MOST_ROWS: usize = 4096;
 
 impl System {
@@ -46,8 +47,11 @@ impl System {
             let mut longer = Vec::new();
             for name in &names {
                 for values in &last {
-                    if rows.len() + values.len() > MOST_ROWS {
-                        let message = format!("a codistribution of more than {MOST_ROWS} rows");
+                    let height = rows.len() + values.len();
+                    if height > MOST_ROWS || height * unknowns.len() > LARGEST_MATRIX {
+                        let message = format!(
+                            "a codistribution of more than {MOST_ROWS} rows, or of more than {LARGEST_MATRIX} entries"
+                        );
                         return Err(
                             Problem::new(Code::TooLarge, span, message, "here").help("ask for a lower order")
                         );

@@ -5,6 +5,7 @@ use super::error::Problem;
 use super::model::{System, Value};
 use super::problems::Cause;
 use super::syntax::{ClaimSyntax, Statement};
+use palmistry_math::expression::NodeId;
 use palmistry_math::expression::syntax::Relation;
 
 impl System {
@@ -52,8 +53,21 @@ impl System {
             let message = format!("'{}' compares numbers, not {left} and {right}", relation.sign());
             return Err(Problem::new(Code::Statement, &statement.equation.span, message, "this relation"));
         }
-        for further in &statement.further {
-            self.scalar(&further.right)?;
+        let mut further = Vec::new();
+        for one in &statement.further {
+            further.push((self.scalar(&one.right)?, &one.right.span));
+        }
+        if of_a_rank {
+            let side = |value: &Value| if let Value::Scalar(number) = value { Some(*number) } else { None };
+            let bound = side(&values.0).or(side(&values.1)).map(|number| (number, &statement.equation.span));
+            let is_whole = |number: NodeId| {
+                self.graph.constant_value(number).is_some_and(|value| value.denominator().is_one())
+            };
+            if let Some((_, span)) = bound.into_iter().chain(further).find(|(number, _)| !is_whole(*number)) {
+                let message = "a rank is compared with a whole number";
+                return Err(Problem::new(Code::Statement, span, message, "no whole number")
+                    .help("the number itself, as in rank = 3, and no name"));
+            }
         }
         if bounds_a_rank && statement.further.iter().any(|further| !further.relation.is_ordering()) {
             let message = "a rank has bounds, as in 2 <= rank <= 3";

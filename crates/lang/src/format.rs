@@ -2,8 +2,9 @@
 //! else is touched: every sign, every comment and every text in quotation marks stays as it is, byte for byte.
 
 use super::codes::Code;
+use super::entry_words::ENTRIES;
 use super::error::{Problem, ReadError};
-use super::grammar::{ENTRIES, parse_file};
+use super::grammar::parse_file;
 use super::signals;
 use super::source_text::{refuse_reordering, with_plain_line_ends};
 use super::views;

@@ -1,6 +1,7 @@
 //! The grammar of a proof file, without the meaning of its names. `book/src/language.md` documents it; it is a public interface.
 
 use super::dimension::{annotation, declared};
+use super::entry_words::{ENTRY, advised, is_an_entry, no_entry};
 use super::model::Role;
 use super::problems::{Damage, indentation, is_first_in_line, next_entry, open_quotation};
 use super::signals::entry;
@@ -11,12 +12,13 @@ use super::visible::visible;
 use palmistry_io::foreign::shown;
 use palmistry_math::expression::Expected;
 use palmistry_math::expression::parse::{
-    Depth, Read, Text, blank, conditions, ends_a_line, equations, keyword, loops, moved, name, range,
-    read_all, repeat, sign, stop, sum, target, written_out,
+    Depth, Read, Text, blank, conditions, equations, keyword, loops, moved, name, range, read_all, repeat,
+    sign, stop, sum, target, written_out,
 };
 use palmistry_math::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
+use std::collections::HashSet;
 use winnow::combinator::{alt, cut_err, opt, peek, preceded, separated};
-use winnow::error::{ErrMode, ParserError};
+use winnow::error::ErrMode;
 use winnow::prelude::*;
 use winnow::stream::{Location, Stream};
 use winnow::token::{literal, take_till, take_while};
@@ -305,7 +307,12 @@ fn claim(input: &mut Text<'_>) -> Read<Item> {
     let remark = opt(quoted).parse_next(input)?;
     let body = ClaimBody::Claim { statement, expected };
     let (id, span) = (id.text, id.span);
-    Ok(Item::Claim(Box::new(ClaimSyntax {
+    Ok(sound(id, span, (body, basis, remark)))
+}
+
+/// An entry that is no fault.
+fn sound(id: String, span: Span, (body, basis, remark): (ClaimBody, Basis, Option<String>)) -> Item {
+    Item::Claim(Box::new(ClaimSyntax {
         id,
         span,
         body,
@@ -314,7 +321,7 @@ fn claim(input: &mut Text<'_>) -> Read<Item> {
         passage: None,
         remark,
         conclusion: None,
-    })))
+    }))
 }
 
 /// `erratum`, `damaged`, `scan`, `convention` and `loose`.
@@ -336,21 +343,8 @@ fn remark_only(input: &mut Text<'_>) -> Read<Item> {
     let text = cut_err(quoted).parse_next(input)?;
     let body = if open { ClaimBody::Open { reason: text } } else { ClaimBody::Definition { text } };
     let (id, span) = (id.text, id.span);
-    let basis = Basis::Derived;
-    Ok(Item::Claim(Box::new(ClaimSyntax {
-        id,
-        span,
-        body,
-        basis,
-        follows: None,
-        passage: None,
-        remark: None,
-        conclusion: None,
-    })))
+    Ok(sound(id, span, (body, Basis::Derived, None)))
 }
-
-const ENTRY: &str = "one of: system, use, state, param, angle, assume, latex, let, drift, input, field, output, sample, claim, erratum, \
-                     damaged, scan, convention, loose, definition, undecided, set, pole, map, line, reduction, known, unknown, initial, experiments";
 
 /// How names look in a formula: `latex Fyf "F_{yf}"`.
 fn looks(input: &mut Text<'_>) -> Read<Item> {
@@ -384,95 +378,6 @@ fn item(input: &mut Text<'_>) -> Read<Vec<Item>> {
     alt((definitions, one.map(|item| vec![item]))).parse_next(input)
 }
 
-/// The words that begin an entry.
-pub(super) const ENTRIES: [&str; 30] = [
-    "system",
-    "assume",
-    "latex",
-    "use",
-    "state",
-    "param",
-    "angle",
-    "let",
-    "drift",
-    "input",
-    "field",
-    "output",
-    "sample",
-    "claim",
-    "erratum",
-    "damaged",
-    "scan",
-    "convention",
-    "loose",
-    "definition",
-    "undecided",
-    "set",
-    "pole",
-    "map",
-    "line",
-    "reduction",
-    "known",
-    "unknown",
-    "initial",
-    "experiments",
-];
-
-/// Entries by the names that they have elsewhere.
-const OTHER_ENTRIES: [(&str, &str); 16] = [
-    ("const", "param"),
-    ("constant", "param"),
-    ("constants", "param"),
-    ("parameter", "param"),
-    ("parameters", "param"),
-    ("variable", "state"),
-    ("var", "state"),
-    ("dynamics", "drift"),
-    ("ode", "drift"),
-    ("equations", "drift"),
-    ("def", "let"),
-    ("import", "use"),
-    ("include", "use"),
-    ("theorem", "claim"),
-    ("lemma", "claim"),
-    ("measure", "output"),
-];
-
-/// What to say where no entry begins.
-fn no_entry(text: &str, input: &Text<'_>, after_an_entry: bool) -> Expected {
-    let mut error = Expected::from_input(input);
-    let line = text[..error.at].rfind(ends_a_line).map_or(0, |end| end + 1);
-    let word: String = text[error.at..].chars().take_while(|c| c.is_alphanumeric()).collect();
-    if after_an_entry && !text[line..error.at].trim().is_empty() {
-        error.what = "an operator, or the next entry on a line of its own".to_owned();
-        error.help = Some("a product is written with '*'".to_owned());
-    } else {
-        // words that are names too begin an entry only where a title follows
-        if let "set" | "pole" | "map" | "line" = word.as_str() {
-            error.what = format!("a title in quotation marks behind '{word}'");
-            let step = "; a step of discrete time is written in a drift, as in x+ = e";
-            let help = if word == "map" { step } else { "" };
-            error.help = Some(format!("the reference of the language shows what a {word} consists of{help}"));
-            return error;
-        }
-        error.what = ENTRY.to_owned();
-        let other = OTHER_ENTRIES.into_iter().find(|(other, _)| *other == word).map(|(_, own)| own);
-        let behind = text[error.at..].get(word.len()..).unwrap_or_default().trim_start();
-        let is_equation = !word.is_empty() && behind.starts_with('=') && !behind.starts_with("==");
-        let constant = is_equation.then(|| {
-            format!("a constant is declared, as in param {word} = 2, and an abbreviation as let {word} = ...")
-        });
-        let near = super::error::nearest(&word, ENTRIES).filter(|near| *near != word);
-        let near = other
-            .map(|own| format!("it is called '{own}'"))
-            .or(constant)
-            .or(near.map(|near| format!("perhaps you meant '{near}'")));
-        let go_on = || "or an operator, if the expression above goes on here".to_owned();
-        error.help = near.or_else(|| after_an_entry.then(go_on));
-    }
-    error
-}
-
 /// Reads a whole file.
 pub(crate) fn parse_file(text: &str) -> Result<Vec<Item>, Expected> {
     let Entries { items, mut damage, .. } = parse_entries(text, 1);
@@ -485,20 +390,17 @@ fn never_closed(at: usize) -> Expected {
     Expected { what: "a closing quotation mark for this one".to_owned(), at, help: Some(help.to_owned()) }
 }
 
-/// Whether a text begins with the word of an entry.
-fn is_an_entry(text: &str) -> bool {
-    let word: String = text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-    ENTRIES.contains(&word.as_str())
-}
-
-/// With the entry that may be meant, where a line begins with a word that is almost one and was taken for a state.
-fn advised(expected: Expected, text: &str) -> Expected {
-    let before = text.get(..expected.at).unwrap_or_default();
-    let line = before.rsplit(ends_a_line).next().unwrap_or_default().trim();
-    let is_word = line.chars().all(|c| c.is_ascii_alphanumeric());
-    let near = super::error::nearest(line, ENTRIES).filter(|_| is_word && expected.help.is_none());
-    let meant = near.filter(|near| *near != line).map(|near| format!("perhaps you meant '{near}'"));
-    Expected { help: expected.help.or(meant), ..expected }
+/// Whether the last entry is a field that leaves out states of the file.
+fn breaks_off(items: &[Item]) -> bool {
+    let Some(Item::Field { components, others_are_zero: false, is_map: false, .. }) = items.last() else {
+        return false;
+    };
+    let named: HashSet<&str> = components.iter().map(|(name, _)| name.text.as_str()).collect();
+    let states = items.iter().flat_map(|item| match item {
+        Item::State(list) => list.as_slice(),
+        _ => &[],
+    });
+    { states }.any(|state| !named.contains(state.name.text.as_str()))
 }
 
 /// What could be read of a file.
@@ -546,7 +448,7 @@ pub(super) fn parse_entries(text: &str, most: usize) -> Entries {
                     (before.0, before.1, before.1, never_closed(before.1 + quote))
                 }
                 // a field whose rates break off says nothing of the states that it does not come to
-                _ if matches!(items.last(), Some(Item::Field { .. })) && !is_an_entry(&text[begin..]) => {
+                _ if breaks_off(&items) && !is_an_entry(&text[begin..]) => {
                     items.pop();
                     spans.pop();
                     (start, begin, before.1, expected)

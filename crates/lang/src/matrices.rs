@@ -8,7 +8,7 @@ use palmistry_math::expression::syntax::{Expr, Span};
 use palmistry_math::expression::{Need, NodeId};
 
 /// The greatest number of entries of a matrix.
-const LARGEST_MATRIX: usize = 1 << 16;
+pub(super) const LARGEST_MATRIX: usize = 1 << 16;
 
 impl System {
     /// The determinant of a square matrix of expressions. An error is a matrix that is not square, or too large to be written out.

@@ -4,15 +4,15 @@ use super::codes::Code;
 use super::dimension::{Dimensions, Import};
 use super::domain::Domain;
 use super::error::Problem;
-use super::syntax::{ClaimBody, ClaimSyntax};
+use super::syntax::ClaimSyntax;
 use super::unknowns::Coordinates;
 use super::views::{LineView, MapView, NamedSet, ReductionTo};
-use super::written::{Insert, Mention, Place, Scope, Written, places_in_equation};
+use super::written::Written;
 use dashu::rational::RBig;
 use palmistry_math::expression::notation::FormulaName;
 use palmistry_math::expression::syntax::{Equation, Span};
 use palmistry_math::expression::{Derivation, Graph, Guard, NodeId, Symbol, gradient};
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -110,15 +110,6 @@ impl Field {
     pub fn derive_anew(&mut self, graph: &Graph) {
         self.derivation = self.derivation.with_values(graph, self.components.iter().copied().collect());
     }
-}
-
-/// What names stand for, as it is written: name and text of each.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Explanations {
-    /// Definitions: `name = text`.
-    pub definitions: Vec<(String, String)>,
-    /// Fields along which something is differentiated; the text is a list of `x' = rate`.
-    pub fields: Vec<(String, String)>,
 }
 
 /// A field that takes part in a rank, for reports.
@@ -460,45 +451,6 @@ impl System {
     /// The names that a definition of the file has given.
     pub fn definition(&self, name: &str) -> Option<&Value> {
         self.definitions.get(name)
-    }
-
-    /// What the names in the statements of a claim stand for: definitions and fields, and those that they mention in turn,
-    /// in the order in which they are met; imported ones under the names that they have here.
-    pub fn explanations(&self, body: &ClaimBody) -> Explanations {
-        let states = || self.column_names();
-        let is_definition = |name: &str| self.definitions.contains_key(name);
-        let scope = Scope { source: &self.source, is_definition: &is_definition, states: &states };
-        let mut places = Vec::new();
-        for statement in body.statements() {
-            for equation in statement.all_equations() {
-                places_in_equation(&scope, equation, &mut places);
-            }
-        }
-        places.sort_by_key(|(span, _)| span.start);
-        let mention = |(_, insert): Place| match insert {
-            Insert::Mention(mention) => Some(mention),
-            Insert::States(_) => None,
-        };
-        let mut waiting: VecDeque<Mention> = places.into_iter().filter_map(mention).collect();
-        let mut found = Explanations::default();
-        let mut met = HashSet::new();
-        while let Some(mention) = waiting.pop_front() {
-            if !met.insert(mention.clone()) {
-                continue;
-            }
-            let (list, name, written) = match mention {
-                Mention::Definition(name) => (&mut found.definitions, name.clone(), self.written.get(&name)),
-                Mention::Field(name) => {
-                    let field = self.field(&name);
-                    (&mut found.fields, name, field.map(|field| &field.written))
-                }
-            };
-            if let Some(written) = written {
-                list.push((name, written.text()));
-                waiting.extend(written.mentions());
-            }
-        }
-        found
     }
 
     /// The Lie derivative of an expression along a field of this file, by its place among [`System::fields`].

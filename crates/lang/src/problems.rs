@@ -6,8 +6,8 @@
 //! entry that means nothing leaves its names *broken*, so that what only follows from it is not told again.
 
 use super::elaborate::Wanted;
+use super::entry_words::ENTRIES;
 use super::error::Problem;
-use super::grammar::ENTRIES;
 use super::model::System;
 use super::signals;
 use super::syntax::{Item, Statement};

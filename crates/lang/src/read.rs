@@ -16,7 +16,6 @@ use super::source_text::refuse_reordering;
 use super::syntax::{Item, OutputSyntax};
 use super::unknowns::UnknownKind;
 use super::written::{Written, in_one_line};
-use palmistry_math::expression::notation::FormulaName;
 use palmistry_math::expression::syntax::{Expr, ExprKind, Name, Span};
 use palmistry_math::expression::{Graph, Guard, NodeId, Symbol};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -111,6 +110,9 @@ impl System {
             Time::Discrete => self.finish_discrete_signals(),
         };
         if let Err(problem) = finished {
+            problems.add(problem)?;
+        }
+        for problem in self.looks_alike(&items) {
             problems.add(problem)?;
         }
         self.claim_what_is_assumed();
@@ -298,39 +300,6 @@ impl System {
                 self.outputs.push((text, value));
             }
         }
-    }
-
-    fn enter_looks(&mut self, list: &[(Name, String, Span)]) -> Result<(), Problem> {
-        for (name, latex, span) in list {
-            let is_known = self.find_symbol(&name.text).is_some()
-                || self.definitions.contains_key(&name.text)
-                || self.field(&name.text).is_some()
-                || self.vectors.contains(&name.text);
-            if !is_known {
-                return Err(self.unknown(&name.text, &name.span, Wanted::Name));
-            }
-            let Some(look) = FormulaName::of_latex(latex) else {
-                let shown: String = latex.chars().take(40).collect();
-                let message = format!("'{shown}' is no letter with accents and an index");
-                return Err(Problem::new(Code::View, span, message, "how it looks").help(
-                    "as in \"F_{yf}\", \"\\alpha_f\" or \"\\dot{x}_1\", without superscripts; words stand in \\mathrm{...}",
-                ));
-            };
-            let look_of = |name: &str| self.looks.get(name).cloned().or_else(|| FormulaName::of(name));
-            let names = self.symbols.keys().map(|symbol| self.symbol_name(*symbol));
-            let mut names = names.chain(self.definitions.keys().map(String::as_str));
-            let alike = names.find(|other| *other != name.text && look_of(other).as_ref() == Some(&look));
-            if let Some(other) = alike {
-                let message = format!("'{other}' looks so, and is something else");
-                return Err(Problem::new(Code::View, span, message, "two names of one look")
-                    .help("choose another look"));
-            }
-            if Arc::make_mut(&mut self.looks).insert(name.text.clone(), look).is_some() {
-                let message = format!("'{}' has a look already", name.text);
-                return Err(Problem::new(Code::Twice, &name.span, message, "the second time"));
-            }
-        }
-        Ok(())
     }
 
     pub(super) fn refuse_taken(&self, name: &Name) -> Result<(), Problem> {

@@ -2,8 +2,8 @@
 //! look other than it is.
 
 use super::codes::Code;
+use super::entry_words::ENTRIES;
 use super::error::Problem;
-use super::grammar::ENTRIES;
 use palmistry_io::file::{ReadFailure, read_text};
 use palmistry_io::foreign::shown_path;
 use palmistry_math::expression::parse::ends_a_line;

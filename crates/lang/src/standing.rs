@@ -69,7 +69,7 @@ impl Basis {
     pub fn word(&self) -> &'static str {
         match self {
             Basis::Derived => "proved",
-            Basis::Restates(_) => "restated",
+            Basis::Restates(_) => "holds by definition",
             Basis::Consequence => "consequence",
             Basis::Example => "example",
         }

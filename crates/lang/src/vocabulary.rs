@@ -1,12 +1,12 @@
 //! The words of the language, for those who colour or complete them: the very lists that the reader reads by.
 
 use super::elaborate::OTHER_FUNCTIONS;
-use super::{dimension, grammar, views};
+use super::{dimension, entry_words, views};
 use palmistry_math::expression::{COMPOSED, parse};
 use palmistry_math::number::Function;
 
 /// The words that begin an entry.
-pub const ENTRIES: &[&str] = &grammar::ENTRIES;
+pub const ENTRIES: &[&str] = &entry_words::ENTRIES;
 
 /// Those of them that are names too, unless a title or `of` follows.
 pub const VIEWS: &[&str] = &views::WORDS;

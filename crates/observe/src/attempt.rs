@@ -1,6 +1,6 @@
 //! One attempt in one window: whether something is seen, the search, and what its end is worth.
 
-use super::fit::{Misfit, NoiseFrom};
+use super::fit::{NoiseFrom, Residuals};
 use super::task::Task;
 use super::track::{Update, UpdateEnd};
 use super::window::{Window, WindowExpansion};
@@ -33,7 +33,7 @@ impl MovingWindow {
             seam: None,
             condition: f64::INFINITY,
             cost: f64::INFINITY,
-            misfit: f64::INFINITY,
+            rms_residual: f64::INFINITY,
             steps: 0,
             troubled: 0,
             seconds: 0.0,
@@ -48,7 +48,7 @@ impl MovingWindow {
         update.end = match window.expand(&guess, Order::First) {
             Err(lost) => UpdateEnd::Lost(lost),
             Ok(expansion) => {
-                (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
+                (update.cost, update.rms_residual) = (expansion.cost, expansion.rms_residual());
                 // where nothing is seen at the guess more may be seen where the search ends
                 let blind =
                     self.see(task, task.sigma, window, (&expansion.slopes, &guess), &sizes, &mut update);
@@ -87,7 +87,7 @@ impl MovingWindow {
             None => square + implicit.map(term).sum::<f64>(),
         };
         let taken = if task.exact { task.full.states.len() - task.estimated() } else { 0 };
-        let misfit = Misfit {
+        let rms_residual = Residuals {
             differences,
             unmeasured: &not_counted,
             slopes: Some(&expansion.slopes),
@@ -102,11 +102,11 @@ impl MovingWindow {
         };
         match &window.weights {
             Some(weights) => {
-                let (computed, degrees) = (misfit.computed(), misfit.degrees());
-                let judged = (misfit.loss, misfit.alarm);
+                let (computed, degrees) = (rms_residual.computed(), rms_residual.degrees());
+                let judged = (rms_residual.loss, rms_residual.alarm);
                 weights.fit(differences, &expansion.slopes, computed, degrees, judged)
             }
-            None => misfit.fit(task.noise),
+            None => rms_residual.fit(task.noise),
         }
     }
 
@@ -181,7 +181,7 @@ impl MovingWindow {
         let left = match window.expand(found, Order::First) {
             Err(lost) => return (UpdateEnd::Lost(lost), None),
             Ok(expansion) => {
-                (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
+                (update.cost, update.rms_residual) = (expansion.cost, expansion.rms_residual());
                 let fit = self.fit(task, window, &expansion);
                 update.fit = Some(fit);
                 update.drifting = fit.drift.map(|own| task.full.outputs[own.output].clone());
@@ -190,7 +190,7 @@ impl MovingWindow {
                 update.discounted = left.iter().filter(|value| loss.is_discounted(**value, sigma)).count();
                 let here = (&expansion.slopes, found);
                 // what is left and is no noise says nothing of how well the readings see
-                let is_noise = fit.fits || fit.from != NoiseFrom::Misfit;
+                let is_noise = fit.fits || fit.from != NoiseFrom::Residual;
                 let may_be_blind =
                     is_noise || self.see(task, task.sigma, window, here, sizes, update).is_some();
                 if let Some(blind) = self.see(task, fit.sigma, window, here, sizes, update)

@@ -26,14 +26,14 @@ impl MovingWindow {
         &self,
         task: &Task<'_>,
         rows: &Range<usize>,
-        unseen: Option<&'u UninformativeWindows>,
+        unobserved: Option<&'u UninformativeWindows>,
         learned: &Learned,
         anew: &Anew<'_>,
         track: &mut Track,
     ) -> Option<(&'u UninformativeWindows, Update, Vec<Update>)> {
-        let unseen = unseen?;
-        let all = rows.start - unseen.rows..rows.end;
-        let before = Learned { is_asked: learned.is_asked, ..unseen.before.clone() };
+        let unobserved = unobserved?;
+        let all = rows.start - unobserved.rows..rows.end;
+        let before = Learned { is_asked: learned.is_asked, ..unobserved.before.clone() };
         // what does not come of it is not told: the window then stands alone
         let mut told = Track::default();
         let (update, others) = self.next_update(task, &all, &[], &before, anew, &mut told);
@@ -47,24 +47,24 @@ impl MovingWindow {
             update.from,
             all.len()
         ));
-        Some((unseen, update, others))
+        Some((unobserved, update, others))
     }
 
     /// What the next window takes as well, after one that is blind.
     pub(super) fn unseen_after(
         &self,
         rows: &Range<usize>,
-        unseen: Option<&UninformativeWindows>,
+        unobserved: Option<&UninformativeWindows>,
         learned: &Learned,
         update: &Update,
         track: &mut Track,
     ) -> Option<Arc<UninformativeWindows>> {
         let own = rows.len() - 1;
         let alone =
-            || UninformativeWindows { rows: own, before: Learned { unseen: None, ..learned.clone() } };
-        let next = match unseen {
-            Some(unseen) if unseen.rows + 2 * own <= MOST * self.window.max(2) => {
-                UninformativeWindows { rows: unseen.rows + own, before: unseen.before.clone() }
+            || UninformativeWindows { rows: own, before: Learned { unobserved: None, ..learned.clone() } };
+        let next = match unobserved {
+            Some(unobserved) if unobserved.rows + 2 * own <= MOST * self.window.max(2) => {
+                UninformativeWindows { rows: unobserved.rows + own, before: unobserved.before.clone() }
             }
             Some(_) => {
                 track.remarks.push(format!(

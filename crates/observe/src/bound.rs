@@ -47,22 +47,22 @@ pub fn cramer_rao(slopes: &DMatrix<f64>, sigma: f64, sizes: &[f64]) -> CramerRao
     if largest <= 0.0 {
         return blind();
     }
-    let unseen: Vec<usize> = (0..p).filter(|k| values[*k] <= UNSEEN * largest).collect();
+    let unobserved: Vec<usize> = (0..p).filter(|k| values[*k] <= UNSEEN * largest).collect();
     let entry = |i: usize, j: usize| -> f64 {
         let terms = (0..p).map(|k| directions[(k, i)] * directions[(k, j)] / (values[k] * values[k]));
         sigma * sigma * sizes[i] * sizes[j] * terms.sum::<f64>()
     };
     let deviation = |i: usize| {
         // an unknown that has no part in what is not seen is seen all the same
-        let hidden = unseen.iter().any(|k| directions[(*k, i)].abs() > 1e-6);
-        let seen = (0..p).filter(|k| !unseen.contains(k));
+        let hidden = unobserved.iter().any(|k| directions[(*k, i)].abs() > 1e-6);
+        let seen = (0..p).filter(|k| !unobserved.contains(k));
         let square: f64 = seen.map(|k| (directions[(k, i)] / values[k]).powi(2)).sum();
         if hidden { f64::INFINITY } else { sigma * sizes[i] * square.sqrt() }
     };
     CramerRaoBound {
         deviations: (0..p).map(deviation).collect(),
         condition: if smallest > 0.0 { largest / smallest } else { f64::INFINITY },
-        covariance: unseen.is_empty().then(|| DMatrix::from_fn(p, p, entry)),
+        covariance: unobserved.is_empty().then(|| DMatrix::from_fn(p, p, entry)),
         weakest,
     }
 }

@@ -6,7 +6,7 @@ const MOST_TERMS: usize = 100_000;
 /// The probability that the sum of the squares of `degrees` independent normal errors, each in units of its standard
 /// deviation, is larger than `square`: the regularised upper incomplete gamma function `Q(degrees/2, square/2)`.
 ///
-/// One for a square that is not positive, zero for one that is no number: such a misfit is not explained.
+/// One for a square that is not positive, zero for one that is no number: such a residual is not explained.
 ///
 /// Reference: M. Abramowitz, I. Stegun, Handbook of Mathematical Functions, 6.5.29, 6.5.31 (as J. Lentz evaluates fractions),
 /// 26.4.19.

@@ -35,7 +35,7 @@ impl MovingWindow {
             rows.clone().flat_map(|row| task.readings(row)).fold(0.0, |most: f64, x| most.max(x.abs()));
         let is_far = |left: f64| {
             let most = FAR_FROM_ANSWER * left.max(task.sigma).max(ROUGHLY * read);
-            rough.misfit.is_nan() || rough.misfit > most
+            rough.rms_residual.is_nan() || rough.rms_residual > most
         };
         // a least error that is far above a noise that is known will not come down to it
         let is_least = matches!(rough.end, UpdateEnd::DoesNotFit | UpdateEnd::Stuck);
@@ -47,7 +47,7 @@ impl MovingWindow {
         let rough = match is_slow {
             true => {
                 let again = added(&rough, trusting.update(&task.roughly(), &rough.estimate, rows, clamped));
-                if again.misfit > STILL * rough.misfit {
+                if again.rms_residual > STILL * rough.rms_residual {
                     return again;
                 }
                 again
@@ -77,7 +77,7 @@ fn is_known(task: &Task<'_>) -> bool {
 /// Whether far more is left than a noise that is known where the search ended or could not get on.
 pub(super) fn is_refuted(task: &Task<'_>, update: &Update) -> bool {
     let is_end = !matches!(update.end, UpdateEnd::Converged | UpdateEnd::Lost(_));
-    is_end && is_known(task) && update.misfit > FAR_FROM_ANSWER * task.sigma
+    is_end && is_known(task) && update.rms_residual > FAR_FROM_ANSWER * task.sigma
 }
 
 /// An update, with what was done for it before.

@@ -1,4 +1,4 @@
-//! Whether a misfit is what the errors of the readings explain.
+//! Whether a residual is what the errors of the readings explain.
 
 use super::chi_square::exceeded;
 use super::correlation::Neighbours;
@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 /// A run says of a model that is right that it does not fit no more often than this.
 pub const FALSE_ALARMS: f64 = 1e-3;
 
-/// A misfit below this part of the readings is what interpolation between samples may leave: it tells nothing of the model.
+/// A residual below this part of the readings is what interpolation between samples may leave: it tells nothing of the model.
 pub(super) const COMPUTED: f64 = 1e-7;
 
 /// More readings than this part of them are no outliers: the model is wrong.
@@ -50,13 +50,13 @@ impl MeasurementErrors {
     }
 }
 
-/// Where the standard deviation comes from by which a misfit is measured.
+/// Where the standard deviation comes from by which a residual is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoiseFrom {
     /// It was stated.
     Stated,
-    /// It is the misfit's own: no noise was stated.
-    Misfit,
+    /// It is the residual's own: no noise was stated.
+    Residual,
     /// Nothing is left but what rounding and interpolation leave, and no noise was stated.
     Computation,
 }
@@ -68,7 +68,7 @@ pub struct Fit {
     pub chi_square: f64,
     /// Readings less unknowns.
     pub degrees: usize,
-    /// How likely a misfit is that is no better, were the model right: of one so large (chi-square), whose neighbours agree so much, or that drifts so far, where the
+    /// How likely a residual is that is no better, were the model right: of one so large (chi-square), whose neighbours agree so much, or that drifts so far, where the
     /// noise was stated; of one whose neighbours are so alike (von Neumann's ratio) where it was not.
     pub probability: f64,
     /// Readings that no normal error explains, and that a robust loss leaves out of the test.
@@ -85,7 +85,7 @@ pub struct Fit {
     pub sigma: f64,
     /// Where it comes from.
     pub from: NoiseFrom,
-    /// Whether the misfit is explained.
+    /// Whether the residual is explained.
     pub fits: bool,
 }
 
@@ -115,7 +115,7 @@ fn is_least(own: f64, other: Option<f64>) -> bool {
 }
 
 /// What is compared: differences sample by sample, `outputs` of them each, after `unknowns` were fitted.
-pub(super) struct Misfit<'a> {
+pub(super) struct Residuals<'a> {
     pub differences: &'a DVector<f64>,
     /// The places of those of which nothing was measured: they are zero, and count nowhere.
     pub unmeasured: &'a [usize],
@@ -138,7 +138,7 @@ pub(super) struct Misfit<'a> {
     pub timing: f64,
 }
 
-impl Misfit<'_> {
+impl Residuals<'_> {
     pub fn degrees(&self) -> usize {
         (self.differences.len() - self.unmeasured.len()).saturating_sub(self.unknowns)
     }
@@ -244,7 +244,7 @@ impl Misfit<'_> {
     fn by_itself(&self) -> Fit {
         let (degrees, rms) = (self.degrees(), self.rms());
         let sigma = rms.max(self.least);
-        let from = if rms > self.least { NoiseFrom::Misfit } else { NoiseFrom::Computation };
+        let from = if rms > self.least { NoiseFrom::Residual } else { NoiseFrom::Computation };
         let chi_square = self.differences.norm_squared() / (sigma * sigma);
         let computed = rms <= self.computed().max(self.least);
         let probability = if computed { 1.0 } else { self.independent() };
@@ -302,7 +302,7 @@ pub(super) fn least_of<const N: usize>(all: [Option<f64>; N]) -> f64 {
 pub fn explains(differences: &DVector<f64>, unknowns: usize, size: f64, noise: Noise) -> Fit {
     let alarm = FALSE_ALARMS;
     let (slopes, loss) = (None, Loss::Squares);
-    Misfit {
+    Residuals {
         differences,
         unmeasured: &[],
         slopes,
@@ -329,8 +329,8 @@ mod tests {
         radius * (std::f64::consts::TAU * random.random::<f64>()).cos()
     }
 
-    fn misfit(differences: &DVector<f64>, alarm: f64) -> Misfit<'_> {
-        Misfit {
+    fn rms_residual(differences: &DVector<f64>, alarm: f64) -> Residuals<'_> {
+        Residuals {
             differences,
             unmeasured: &[],
             slopes: None,
@@ -360,7 +360,7 @@ mod tests {
                     .into_iter()
                     .zip(&mut alarms)
                 {
-                    *count += usize::from(!misfit(&differences, alarm).fit(noise).fits);
+                    *count += usize::from(!rms_residual(&differences, alarm).fit(noise).fits);
                 }
             }
             assert!(alarms.iter().all(|count| *count as f64 <= most), "{alarms:?} at {alarm}");
@@ -373,12 +373,12 @@ mod tests {
     fn what_is_no_noise_is_not_called_so() {
         let mut random = ChaCha8Rng::seed_from_u64(8);
         let wave = DVector::from_fn(160, |i, _| 1e-4 * (0.05 * i as f64).sin() + 1e-5 * normal(&mut random));
-        assert!(!misfit(&wave, 1e-4).fit(Noise::Unstated).fits);
-        assert!(!misfit(&wave, 1e-4).fit(Noise::Stated { normal: 1e-5, rounding: 0.0 }).fits);
-        assert!(misfit(&wave, 1e-4).fit(Noise::Stated { normal: 1e-4, rounding: 0.0 }).fits);
+        assert!(!rms_residual(&wave, 1e-4).fit(Noise::Unstated).fits);
+        assert!(!rms_residual(&wave, 1e-4).fit(Noise::Stated { normal: 1e-5, rounding: 0.0 }).fits);
+        assert!(rms_residual(&wave, 1e-4).fit(Noise::Stated { normal: 1e-4, rounding: 0.0 }).fits);
         let unknown = DVector::from_element(160, f64::NAN);
         for noise in [Noise::Unstated, Noise::Stated { normal: 1.0, rounding: 1.0 }] {
-            assert!(!misfit(&unknown, 1e-4).fit(noise).fits, "{noise:?}");
+            assert!(!rms_residual(&unknown, 1e-4).fit(noise).fits, "{noise:?}");
         }
     }
 
@@ -387,7 +387,7 @@ mod tests {
     fn nothing_fits_that_nothing_is_left_to_check() {
         let differences = DVector::from_element(160, 0.0);
         for noise in [Noise::Stated { normal: 1e-4, rounding: 0.0 }, Noise::Unstated] {
-            let fits = |unknowns| Misfit { unknowns, ..misfit(&differences, 1e-4) }.fit(noise).fits;
+            let fits = |unknowns| Residuals { unknowns, ..rms_residual(&differences, 1e-4) }.fit(noise).fits;
             assert!(fits(159) && !fits(160) && !fits(161), "{noise:?}");
         }
     }
@@ -436,7 +436,7 @@ mod tests {
     fn roundings_may_hang_together() {
         let rounding = |rounding: f64| Noise::Stated { normal: 0.0, rounding };
         let rest = DVector::from_element(160, 0.49e-3);
-        assert!(misfit(&rest, 1e-4).fit(rounding(1e-3)).fits);
-        assert!(!misfit(&rest, 1e-4).fit(rounding(0.9e-3)).fits);
+        assert!(rms_residual(&rest, 1e-4).fit(rounding(1e-3)).fits);
+        assert!(!rms_residual(&rest, 1e-4).fit(rounding(0.9e-3)).fits);
     }
 }

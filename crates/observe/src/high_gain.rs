@@ -124,12 +124,12 @@ impl Observer for HighGain {
                     }
                     so_far.hold(times[row], &mut held, &error.covariance());
                     state = held.as_slice().to_vec();
-                    so_far.track.unseen += usize::from(!seen);
+                    so_far.track.unobserved += usize::from(!seen);
                 }
                 Err(lost) => {
                     // what has run away does not come back
                     so_far.track.remarks.push(format!("held from there on: {lost}"));
-                    so_far.track.unseen += times.len() - row;
+                    so_far.track.unobserved += times.len() - row;
                     let unknown = DVector::from_element(state.len(), f64::INFINITY);
                     for time in &times[row..] {
                         so_far.believe(*time, &state, &unknown, Vec::new());

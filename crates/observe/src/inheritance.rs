@@ -34,26 +34,27 @@ impl MovingWindow {
         let is_first = task.learned.is_none();
         let fewest = if is_first { self.window.min(samples) } else { self.window };
         // what told too little alone stands before the next window
-        let mut row = learned.rows_unseen();
+        let mut row = learned.rows_unobserved();
         while row + 1 < samples && !task.interrupted() {
             // windows share a sample: where one ends the next begins
             let mut rows = row..(row + self.window.max(2)).min(samples - 1) + 1;
             let clamped: &[usize] = if is_first && row == 0 { &task.clamped } else { &[] };
             let mut start = task.full_state(&learned.belief, row);
-            let (mut arrival, mut unseen) = (None, learned.unseen.take());
+            let (mut arrival, mut unobserved) = (None, learned.unobserved.take());
             let before = learned.spread.take();
             let mut covariance = before.as_ref().map(|before| Arc::new(before.as_read(task)));
             let (mut is_tested, mut meets) = (false, None);
             // too few samples to compare are only followed, and seen if those before were
             if rows.len() >= fewest {
-                let grown = self.grown_by_unseen(task, &rows, unseen.as_deref(), &learned, anew, &mut track);
+                let grown =
+                    self.grown_by_unseen(task, &rows, unobserved.as_deref(), &learned, anew, &mut track);
                 let is_grown = grown.is_some();
                 let (own, update, others) = match grown {
                     Some((before, update, others)) => {
                         rows.start -= before.rows;
                         // what was believed there is known better now
                         track.estimates.truncate(if rows.start == 0 { 0 } else { rows.start + 1 });
-                        track.unseen = track.unseen.saturating_sub(before.rows);
+                        track.unobserved = track.unobserved.saturating_sub(before.rows);
                         (Self::inheriting(task, &before.before, &[]), update, others)
                     }
                     None => {
@@ -63,8 +64,8 @@ impl MovingWindow {
                     }
                 };
                 let is_blind = matches!(update.end, UpdateEnd::Blind { .. });
-                unseen = match is_blind && self.may_grow(task, clamped) {
-                    true => self.unseen_after(&rows, unseen.as_deref(), &learned, &update, &mut track),
+                unobserved = match is_blind && self.may_grow(task, clamped) {
+                    true => self.unseen_after(&rows, unobserved.as_deref(), &learned, &update, &mut track),
                     false => None,
                 };
                 learned.is_asked |= is_asked(&update);
@@ -88,7 +89,7 @@ impl MovingWindow {
             }
             learned.belief = followed.belief;
             learned.spread = followed.ends.map(|[_, last]| Arc::new(last));
-            (learned.arrival, learned.unseen) = (arrival, unseen);
+            (learned.arrival, learned.unobserved) = (arrival, unobserved);
             row = rows.end - 1;
         }
         track.hand_on(learned);

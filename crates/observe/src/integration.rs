@@ -22,10 +22,10 @@ impl Observer for Integration {
             match task.integrate(&belief, row - 1..row + 1) {
                 Ok(states) => belief = states.into_iter().next_back().unwrap_or(belief),
                 Err(lost) => {
-                    if track.unseen == 0 {
+                    if track.unobserved == 0 {
                         track.remarks.push(format!("held from where the equations have no value: {lost}"));
                     }
-                    track.unseen += 1;
+                    track.unobserved += 1;
                 }
             }
             track.estimates.push(unknown(time, belief.clone()));

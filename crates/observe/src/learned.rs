@@ -36,7 +36,7 @@ pub struct Learned {
     /// The state of a filter, and its covariance or a factor of it.
     pub(super) filter: Option<(DVector<f64>, DMatrix<f64>)>,
     /// The samples before that told too little.
-    pub(super) unseen: Option<Arc<UninformativeWindows>>,
+    pub(super) unobserved: Option<Arc<UninformativeWindows>>,
     /// Where the last window ended, and how well that is known.
     pub(super) spread: Option<Arc<Spread>>,
 }
@@ -76,13 +76,13 @@ impl Learned {
             is_asked,
             arrival: None,
             filter: None,
-            unseen: None,
+            unobserved: None,
             spread: None,
         }
     }
 
     /// How many samples before this one the next window takes as well, because they told too little alone.
-    pub fn rows_unseen(&self) -> usize {
-        self.unseen.as_ref().map_or(0, |unseen| unseen.rows)
+    pub fn rows_unobserved(&self) -> usize {
+        self.unobserved.as_ref().map_or(0, |unobserved| unobserved.rows)
     }
 }

@@ -1,4 +1,4 @@
-//! How misfits are weighed: by their squares, or so that a few that are far off say no more than that.
+//! How residuals are weighed: by their squares, or so that a few that are far off say no more than that.
 
 use super::chi_square::exceeded;
 use serde::Deserialize;

@@ -185,7 +185,7 @@ impl MovingWindow {
         let update = self.attempt(task, belief, rows, clamped);
         let exactly = task.exact && task.noise == Noise::Unstated;
         let at_best = matches!(update.end, UpdateEnd::Converged | UpdateEnd::DoesNotFit | UpdateEnd::Stuck);
-        if !(exactly && at_best) || update.misfit <= task.sigma {
+        if !(exactly && at_best) || update.rms_residual <= task.sigma {
             return update;
         }
         let mut task = task.clone();
@@ -303,7 +303,7 @@ impl MovingWindow {
         if let Err(lost) = followed {
             track.remarks.push(format!("the model could not be followed: {lost}"));
         }
-        track.unseen += rows.len() - 1;
+        track.unobserved += rows.len() - 1;
         let held = || vec![belief.to_vec(); rows.len()];
         let states = match self.when_blind {
             WhenUnobservable::Hold => held(),

@@ -181,7 +181,7 @@ impl MultipleShooting {
             if answers().any(|update| is_near(task, &update.estimate, &candidate.state, &[], SAME_BASIN)) {
                 continue;
             }
-            let answer = answers().map(|update| update.misfit).reduce(f64::min);
+            let answer = answers().map(|update| update.rms_residual).reduce(f64::min);
             let mut update = self.window.end(task, &candidate.state, told, answer);
             update.steps += candidate.steps;
             update.troubled += candidate.refused;
@@ -217,10 +217,10 @@ impl MultipleShooting {
         let all = starts + usize::from(self.shooting.derivatives);
         let found: Vec<Option<Found>> = (0..all).into_par_iter().map(one).collect();
         let mut found: Vec<Found> = found.into_iter().flatten().collect();
-        found.sort_by(|a, b| (a.misfit + a.gaps).total_cmp(&(b.misfit + b.gaps)));
+        found.sort_by(|a, b| (a.rms_residual + a.gaps).total_cmp(&(b.rms_residual + b.gaps)));
         let compared = segments.measured.iter().flatten().filter(|read| !read.is_nan()).count() as f64;
-        let least = found.first().map_or(0.0, |best| best.misfit);
-        let alike = found.iter().filter(|other| other.misfit <= (1.0 + ALIKE) * least).count();
+        let least = found.first().map_or(0.0, |best| best.rms_residual);
+        let alike = found.iter().filter(|other| other.rms_residual <= (1.0 + ALIKE) * least).count();
         let is_met_by_most = alike >= 2 && 2 * alike >= all;
         let mut candidates: Vec<Candidate> = Vec::new();
         for found in found {
@@ -228,7 +228,7 @@ impl MultipleShooting {
             if candidates.len() < MOST_ENDS
                 && !candidates.iter().any(|other| is_near(task, &other.state, &state, &[], SAME_BASIN))
             {
-                let mean = found.misfit / compared;
+                let mean = found.rms_residual / compared;
                 let is_far = mean > FAR.max(ENOUGH_FAR * enough)
                     || mean > FAR_FROM_BEST * enough.max(least / compared);
                 candidates.push(Candidate { state, steps: found.steps, refused: found.refused, is_far });

@@ -32,7 +32,7 @@ const MOST_REFUSED: usize = 12;
 pub(super) struct Found {
     pub nodes: Nodes,
     /// The sum of the squares of expected minus read, in units of the spreads.
-    pub misfit: f64,
+    pub rms_residual: f64,
     /// The sum of the squares of the gaps, in units of the sizes.
     pub gaps: f64,
     pub steps: u64,
@@ -52,7 +52,7 @@ pub(super) fn seek(
     interrupted: &dyn Fn() -> bool,
 ) -> Result<Found, Lost> {
     let mut here = segments.expand(&first)?;
-    let mut found = Found { nodes: first, misfit: 0.0, gaps: 0.0, steps: 0, refused: 0 };
+    let mut found = Found { nodes: first, rms_residual: 0.0, gaps: 0.0, steps: 0, refused: 0 };
     let (mut weight, last, growth) = WEIGHTS;
     let mut lambda = 1e-2;
     while !interrupted() {
@@ -80,7 +80,7 @@ pub(super) fn seek(
         // what was refused at one weight may go at the next
         lambda = lambda.clamp(1e-9, 1.0);
     }
-    found.misfit = here.iter().map(|segment| segment.differences.norm_squared()).sum();
+    found.rms_residual = here.iter().map(|segment| segment.differences.norm_squared()).sum();
     found.gaps = here.iter().filter_map(|segment| Some(segment.gap.as_ref()?.0.norm_squared())).sum();
     Ok(found)
 }

@@ -13,7 +13,7 @@ pub struct Suspect {
     /// By how much each estimate is off for each unit (100 %, or 1 s) by which the truth exceeds what is believed.
     pub shifts: Vec<f64>,
     /// By how much the truth would have to exceed what is believed to explain the readings best, and the sum of squares that this takes
-    /// off the misfit.
+    /// off the residual.
     pub explains: (f64, f64),
     /// Those others whose errors leave the same trace: from these it cannot be told.
     pub same_as: Vec<String>,

@@ -31,7 +31,7 @@ pub struct Task<'a> {
     /// The standard deviation of the readings of the outputs, in their unit; positive. Where no noise is stated the least that is
     /// believed of any reading.
     pub sigma: f64,
-    /// What is known of the readings' errors: by it a misfit is judged.
+    /// What is known of the readings' errors: by it a residual is judged.
     pub noise: Noise,
     /// What is known of the errors of single columns, by name: of an output in the place of `noise`, of a column that drives the model
     /// beside it. A column that is not there drives the model without error.
@@ -44,7 +44,7 @@ pub struct Task<'a> {
     pub inherit: bool,
     /// What is known of each of what is sought: it lies in this range.
     pub bounds: Vec<[f64; 2]>,
-    /// How misfits are weighed.
+    /// How residuals are weighed.
     pub loss: Loss,
     /// Whether all samples are one window, however many a window has otherwise: it grows from that many to all.
     pub whole: bool,

@@ -1,7 +1,7 @@
 //! How far a window of readings would show that something is wrong with what is taken for known.
 //!
 //! An error of a constant, of a gain or of the outputs' time moves the readings along a direction `d`. The part of it that the unknowns can
-//! follow bends the estimate and leaves no trace; only what is left, `e = d - J J^+ d`, shows as a misfit. Where `e` is zero
+//! follow bends the estimate and leaves no trace; only what is left, `e = d - J J^+ d`, shows as a residual. Where `e` is zero
 //! the readings cannot tell the error from the unknowns, whatever its size.
 
 use super::chi_square::noncentrality;
@@ -39,12 +39,12 @@ pub(super) fn suspects(task: &Task<'_>, window: &Window<'_>, update: &Update, al
     let window = Window { start, ..window.clone() };
     let unknowns = window.unknowns(&window.start);
     let Ok(here) = window.expand(&unknowns, Order::First) else { return Vec::new() };
-    let Some(unseen) = Remainder::of(&here, &window, task) else { return Vec::new() };
+    let Some(unobserved) = Remainder::of(&here, &window, task) else { return Vec::new() };
     let needed = noncentrality(alarm, POWER, fit.degrees as f64);
     let directions = directions(task, &window, &here);
     let judged = |direction: Direction| {
         let slope = window.weighted(direction.slope);
-        unseen.judge(Direction { slope, ..direction }, &here, &fit, needed)
+        unobserved.judge(Direction { slope, ..direction }, &here, &fit, needed)
     };
     let mut judged: Vec<(Suspect, DVector<f64>)> = directions.into_iter().filter_map(judged).collect();
     let names: Vec<String> = judged.iter().map(|(suspect, _)| suspect.to_string()).collect();

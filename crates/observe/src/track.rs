@@ -65,7 +65,7 @@ pub struct Update {
     /// The error of the output, `k` of 4.77, there.
     pub cost: f64,
     /// The root of the mean square of expected minus read there, in the outputs' unit.
-    pub misfit: f64,
+    pub rms_residual: f64,
     /// Steps that were taken.
     pub steps: u64,
     /// Those of them that had to be shortened, refused or replaced.
@@ -139,7 +139,7 @@ pub struct Track {
     /// Other states that fit as well as those of the updates: the readings do not tell them apart.
     pub others: Vec<Update>,
     /// Samples at which it could not see, or not follow its model, and held or integrated instead.
-    pub unseen: usize,
+    pub unobserved: usize,
     /// Whether the innovations of a filter are what its covariance and the noise of the readings explain; none of other methods.
     pub innovations: Option<Innovations>,
     /// What else is to be said.
@@ -151,10 +151,10 @@ pub struct Track {
 impl Track {
     /// Notes that the model could not be followed to a sample, where a filter then holds what it believed.
     pub(super) fn hold(&mut self, lost: &Lost) {
-        if self.unseen == 0 {
+        if self.unobserved == 0 {
             self.remarks.push(format!("held, with the outputs as they are read: {lost}"));
         }
-        self.unseen += 1;
+        self.unobserved += 1;
     }
 
     /// What it believed last.
@@ -176,7 +176,7 @@ impl Track {
 
     /// Whether a method that does not work by windows passes; see [`passes_unwindowed`].
     pub fn passes(&self) -> bool {
-        passes_unwindowed(self.estimates.len(), self.unseen, self.innovations.as_ref())
+        passes_unwindowed(self.estimates.len(), self.unobserved, self.innovations.as_ref())
     }
 
     /// Whether one of its updates is borne out by the readings, none is contradicted and each search came to an end: of methods that work by windows. A window in which
@@ -190,7 +190,7 @@ impl Track {
 
 /// Whether a method that does not work by windows passes: it has estimates, it could follow its model at some sample after the first, and its
 /// innovations, where it has any, are what it believes of its errors.
-pub fn passes_unwindowed(estimates: usize, unseen: usize, innovations: Option<&Innovations>) -> bool {
-    let follows = unseen == 0 || unseen + 1 < estimates;
+pub fn passes_unwindowed(estimates: usize, unobserved: usize, innovations: Option<&Innovations>) -> bool {
+    let follows = unobserved == 0 || unobserved + 1 < estimates;
     estimates > 0 && follows && innovations.is_none_or(|own| own.fits)
 }

@@ -25,7 +25,7 @@ pub struct Window<'a> {
     pub free: Vec<usize>,
     /// What is known of the state before the readings, which is then in the place of the first of them.
     pub(super) arrival: Option<Arc<Arrival>>,
-    /// How misfits are weighed, and the standard deviation of a reading for it.
+    /// How residuals are weighed, and the standard deviation of a reading for it.
     pub(super) loss: (Loss, f64),
     /// Between what the unknowns lie.
     pub(super) bounds: Vec<[f64; 2]>,
@@ -60,7 +60,7 @@ pub struct WindowExpansion {
 
 impl WindowExpansion {
     /// The root of the mean square of the differences as they are.
-    pub fn misfit(&self) -> f64 {
+    pub fn rms_residual(&self) -> f64 {
         self.left.norm() / (self.compared.max(1) as f64).sqrt()
     }
 }

@@ -98,7 +98,7 @@ pub use space_surfaces::{SpaceSurface, SurfaceKind, space_surfaces};
 #[doc(hidden)]
 pub use stress::{stress_json, stress_pictures, stress_text};
 #[doc(hidden)]
-pub use structure::{DiagramGround, NodeVerdict, structure_picture};
+pub use structure::{DiagramGround, structure_picture};
 #[doc(hidden)]
 pub use trade::{trade_front_table, trade_json, trade_plot, trade_text};
 pub use value::{ValueAsked, how_certain, value_json, value_text};

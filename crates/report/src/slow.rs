@@ -43,7 +43,7 @@ fn ways<'a>(observed: &SlowObserved<'a>) -> Vec<Way<'a>> {
         let remark = format!(
             "order {}{kinks}, {:.2e} m residual of a contact; the measurements {} explained",
             found.order,
-            found.misfit,
+            found.rms_residual,
             if answers.explained { "are" } else { "are NOT" }
         );
         all.push(Way {
@@ -208,7 +208,7 @@ pub fn slow_json(observed: &SlowObserved<'_>) -> Value {
             "deviations": deviations,
             "order": found.order,
             "kinks": found.kinks.iter().map(|kink| json!({ "angle": kink.angle, "jumps": kink.jumps })).collect::<Vec<_>>(),
-            "residual": found.misfit,
+            "residual": found.rms_residual,
             "sigma": found.sigma,
             "explained": answers.explained,
         })

@@ -183,10 +183,10 @@ pub(super) fn headline(observed: &SpaceObserved<'_>, update: &SpaceUpdate) -> St
         update.rows.len(),
         update.verdict.name()
     );
-    if let Some(SolidState { chi_square, degrees, misfit, is_stated, .. }) = &update.state {
+    if let Some(SolidState { chi_square, degrees, rms_residual, is_stated, .. }) = &update.state {
         let left = match is_stated {
             true => format!("; chi-square {chi_square:.1} of {degrees}"),
-            false => format!("; {misfit:.1e} m residual of a contact, no noise is stated"),
+            false => format!("; {rms_residual:.1e} m residual of a contact, no noise is stated"),
         };
         out += &left;
     }
@@ -268,7 +268,7 @@ fn update_json(observed: &SpaceObserved<'_>, update: &SpaceUpdate) -> Value {
     let fit = update.state.as_ref().map(|state| {
         json!({
             "fits": state.fits(), "chi_square": state.chi_square, "degrees_of_freedom": state.degrees,
-            "residual": state.misfit, "neumann": number(state.ratio), "noise_from": if state.is_stated { "stated" } else { "residual" },
+            "residual": state.rms_residual, "neumann": number(state.ratio), "noise_from": if state.is_stated { "stated" } else { "residual" },
             "minimum": state.is_minimum, "left_without_noise": number(state.curved), "bent": number(state.bent),
             "rival": state.rival.map(|rival| json!({ "apart": number(rival.apart), "chi_square": rival.chi_square })),
         })

@@ -5,30 +5,10 @@ use crate::drawing::escaped;
 use palmistry_lang::{Role, System};
 use palmistry_math::expression::Symbol;
 use palmistry_math::expression::notation::in_letters;
+use palmistry_rank::observability::Observability;
+use palmistry_rank::sweep::BranchAnswer;
 use std::collections::BTreeSet;
 use std::fmt::Write;
-
-/// What is known of a state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NodeVerdict {
-    /// It is observable.
-    Observable,
-    /// It is unobservable.
-    Unobservable,
-    /// It is not known, or nobody has asked.
-    Open,
-}
-
-impl NodeVerdict {
-    /// A tint of it is behind the letters, which have the colour of those around the picture.
-    fn colour(self) -> &'static str {
-        match self {
-            NodeVerdict::Observable => "#2f9e44",
-            NodeVerdict::Unobservable => "#d6293e",
-            NodeVerdict::Open => "#8a93a0",
-        }
-    }
-}
 
 /// Where a diagram is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,10 +31,10 @@ struct Node {
     is_signal: bool,
 }
 
-/// The diagram as SVG. None where there are no states that move, or too many of them.
+/// The diagram as SVG, with what was found of the unknowns. None where there are no states that move, or too many of them.
 pub fn structure_picture(
     system: &System,
-    verdict: &dyn Fn(&str) -> NodeVerdict,
+    found: Option<&BranchAnswer>,
     ground: DiagramGround,
 ) -> Option<String> {
     let of_first = |symbol: &Symbol| !system.symbol_name(*symbol).contains(['@', '\'']);
@@ -109,7 +89,7 @@ pub fn structure_picture(
     );
     for (node, (x, y)) in nodes.iter().zip(&at) {
         let name = system.symbol_name(node.symbol);
-        let fill = if node.is_signal { "#7c5cbf" } else { verdict(name).colour() };
+        let fill = if node.is_signal { "#7c5cbf" } else { colour(found, name) };
         if measured.contains(&node.symbol) {
             let outer = RADIUS + 4.0;
             let _ = write!(
@@ -148,6 +128,17 @@ pub fn structure_picture(
     }
     out.push_str("</svg>");
     Some(out)
+}
+
+/// What is known of a state. A tint of the colour is behind the letters, which have that of those around the picture.
+fn colour(found: Option<&BranchAnswer>, name: &str) -> &'static str {
+    let mut unknowns =
+        found.into_iter().flat_map(|branch| branch.unknowns.iter().zip(&branch.generic.unknowns));
+    match unknowns.find(|((own, _), _)| own == name).map(|(_, (_, verdict))| *verdict) {
+        Some(Observability::Yes) => "#2f9e44",
+        Some(Observability::No) => "#d6293e",
+        Some(Observability::Undecided) | None => "#8a93a0",
+    }
 }
 
 /// The states that a drift or an input moves, with their rates; in discrete time with what they are after a step.
@@ -224,21 +215,20 @@ fn arrow(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use palmistry_rank::sweep::{RankQuestion, answer_rank};
 
-    /// A chain, its output, and a known signal: three nodes, two arrows, one ring, one square.
+    fn drawn(text: &str) -> Option<String> {
+        let system: System = text.parse().unwrap();
+        let question = RankQuestion { samples: 0, ..RankQuestion::default() };
+        let answer = answer_rank(&mut system.clone(), &question).unwrap();
+        structure_picture(&system, answer.branches.first(), DiagramGround::Page)
+    }
+
+    /// A chain whose end is not measured, its output, and a known signal: three nodes, two arrows, one ring, one square.
     #[test]
     fn a_chain_has_its_arrows() {
-        let system: System =
-            "system \"<chain>\" state x, y known u(t) drift f x' = y y' = u - x*0 output x".parse().unwrap();
-        let picture = structure_picture(
-            &system,
-            &|name| match name {
-                "x" => NodeVerdict::Observable,
-                _ => NodeVerdict::Unobservable,
-            },
-            DiagramGround::Page,
-        )
-        .unwrap();
+        let picture =
+            drawn("system \"<chain>\" state x, y known u(t) drift f x' = u y' = x output x").unwrap();
         assert_eq!(picture.matches("r=\"17\"").count(), 2, "{picture}");
         assert_eq!(picture.matches("stroke-width=\"2.5\"").count(), 1);
         assert_eq!(picture.matches("<rect").count(), 1);
@@ -248,9 +238,14 @@ mod tests {
         );
     }
 
+    /// Of one state, of states that nothing moves and of more than can be made out there is none.
     #[test]
-    fn one_state_has_no_diagram() {
-        let system: System = "system \"one\" state x drift f x' = -x output x".parse().unwrap();
-        assert_eq!(structure_picture(&system, &|_| NodeVerdict::Open, DiagramGround::Page), None);
+    fn what_has_no_diagram() {
+        assert_eq!(drawn("system \"one\" state x drift f x' = -x output x"), None);
+        let many =
+            "system \"many\" state x[1..25] drift f x[i]' = x[i + 1] for i in 1..24 x[25]' = 0 output x[1]";
+        assert_eq!(drawn(many), None);
+        let rests: System = "system \"rests\" state x, y output x".parse().unwrap();
+        assert_eq!(structure_picture(&rests, None, DiagramGround::Page), None);
     }
 }

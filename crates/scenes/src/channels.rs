@@ -202,7 +202,7 @@ pub(super) fn tell(
     if let (false, Some(driving), Some(silent)) = (simulated, driving, silent) {
         let message =
             format!("the errors of '{driving}' are stated, and those of the output '{silent}' are not");
-        let help = format!("add [sensor.{silent}] with its noise: misfits are measured by both");
+        let help = format!("add [sensor.{silent}] with its noise: residuals are measured by both");
         return Err(scene.error_at(&format!("sensor.{driving}"), message, "this sensor", help));
     }
     let of_outputs = || outputs.iter().map(|name| task.errors.get(name).copied().unwrap_or_default());
@@ -243,9 +243,11 @@ pub(super) fn are_told(
     question: &EstimateQuestion,
     signals: &Signals,
 ) -> Result<(), SceneError> {
-    let unseen = not_told(system, question, signals);
-    let Some(first) = unseen.iter().find(|name| CalibrationKind::of(name).is_some()) else { return Ok(()) };
-    let others: Vec<&str> = unseen.iter().filter(|name| *name != first).map(String::as_str).collect();
+    let unobserved = not_told(system, question, signals);
+    let Some(first) = unobserved.iter().find(|name| CalibrationKind::of(name).is_some()) else {
+        return Ok(());
+    };
+    let others: Vec<&str> = unobserved.iter().filter(|name| *name != first).map(String::as_str).collect();
     let message = match others.is_empty() {
         true => format!("no measurements determine '{first}': the rank does not count it"),
         false => format!(

@@ -1,7 +1,7 @@
 //! Several systems side by side: of which of them the readings of each window are.
 //!
 //! A body with friction obeys one system while both contacts slide, another while one rolls, and nobody tells when one follows the other. Each
-//! system of the scene, its own and `[[observer.modes]]`, is estimated on each window by itself; of those whose misfit the errors of the readings
+//! system of the scene, its own and `[[observer.modes]]`, is estimated on each window by itself; of those whose residual the errors of the readings
 //! explain the one with the least is taken, and where none fits that is said: the window has a change of modes in it, or no model is right. What was
 //! learned in the last window that fits, whatever its mode, is where the next begins.
 
@@ -58,7 +58,7 @@ impl ModeEstimate {
     fn error(&self) -> f64 {
         let of = |update: &Update| match update.fit {
             Some(fit) if fit.from == NoiseFrom::Stated => fit.chi_square / fit.degrees.max(1) as f64,
-            _ => update.misfit,
+            _ => update.rms_residual,
         };
         self.update.as_ref().map_or(f64::INFINITY, of)
     }
@@ -252,7 +252,10 @@ impl Experiment {
             if update.is_borne_out() {
                 return Ok((Some(update.clone()), track.last().map(|last| last.state.clone())));
             }
-            if best.as_ref().is_none_or(|best| best.misfit.is_nan() || best.misfit > update.misfit) {
+            if best
+                .as_ref()
+                .is_none_or(|best| best.rms_residual.is_nan() || best.rms_residual > update.rms_residual)
+            {
                 best = Some(update.clone());
             }
             if interrupt.load(Ordering::Relaxed) {

@@ -41,9 +41,9 @@ pub(crate) fn not_told(system: &System, wanted: &EstimateQuestion, signals: &Sig
         at.insert(delay, system.graph.integer(0));
     }
     let answer = generic_answer(&system, &at, Ceiling::Rests);
-    let unseen = answer.unknowns.iter().filter(|(_, seen)| *seen == Observability::No);
-    let unseen: Vec<&str> = unseen.map(|(symbol, _)| system.symbol_name(*symbol)).collect();
-    names.into_iter().filter(|name| unseen.contains(&name.as_str())).collect()
+    let unobserved = answer.unknowns.iter().filter(|(_, seen)| *seen == Observability::No);
+    let unobserved: Vec<&str> = unobserved.map(|(symbol, _)| system.symbol_name(*symbol)).collect();
+    names.into_iter().filter(|name| unobserved.contains(&name.as_str())).collect()
 }
 
 /// Gains and biases where sensors and motors have them: in outputs and in what drives the inputs. None where a column has another part.

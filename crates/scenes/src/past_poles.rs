@@ -158,7 +158,7 @@ impl Experiment {
     fn replace(&self, track: &mut Track, place: usize, rows: &Range<usize>, found: Found) {
         let before = &track.updates[place];
         if matches!(before.end, UpdateEnd::Lost(_)) {
-            track.unseen = track.unseen.saturating_sub(rows.len() - 1);
+            track.unobserved = track.unobserved.saturating_sub(rows.len() - 1);
         }
         let outputs = before.outputs.clone();
         track.updates[place] = Update { outputs, ..found.update };

@@ -280,11 +280,11 @@ impl Experiment {
         let system = System::parse("the least model", &least.text, Path::new("")).ok()?;
         let answer = generic_answer(&system, &Assignment::new(), Ceiling::Rests);
         let names = self.names();
-        let unseen = |answer: &GenericAnswer, system: &System| -> Vec<String> {
+        let unobserved = |answer: &GenericAnswer, system: &System| -> Vec<String> {
             let all = answer.unknowns.iter().filter(|(_, seen)| *seen == Observability::No);
             all.map(|(symbol, _)| system.symbol_name(*symbol).to_owned()).collect()
         };
-        let mut unobservable = unseen(&answer, &system);
+        let mut unobservable = unobserved(&answer, &system);
         // what no output depends on is not in the file
         let gone = least.left_out.iter().filter(|one| matches!(one.why, WhyLeftOut::NoOutputDependsOnIt));
         unobservable.extend(gone.map(|one| one.name.clone()));

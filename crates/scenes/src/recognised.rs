@@ -30,7 +30,7 @@ pub struct LibraryAnswer {
     /// Its rate there, in rad/s.
     pub rate: Measured,
     /// The root of the mean square of what is left of a contact, in m.
-    pub misfit: f64,
+    pub rms_residual: f64,
     /// The test of fit: none where no motion of it could be followed.
     pub fit: Option<Fit>,
 }
@@ -106,7 +106,7 @@ mod tests {
             name: name.to_owned(),
             orientation: measured,
             rate: measured,
-            misfit: 0.0,
+            rms_residual: 0.0,
             fit: Some(fit),
         }
     }

@@ -62,7 +62,7 @@ pub struct WholeMotion {
     /// The radius of gyration, where it was sought.
     pub gyration: Option<Measured>,
     /// The root of the mean square of what is left of a contact, in m.
-    pub misfit: f64,
+    pub rms_residual: f64,
     /// The standard deviation of a contact by which it is measured, in m: the stated one, or what is left where none is stated.
     pub sigma: f64,
     /// Whether it is the stated one.

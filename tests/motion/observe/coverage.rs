@@ -284,7 +284,7 @@ fn the_spline_of_section_4_6_is_found_with_its_kinks() {
             assert!(whole.stated && errors.largest[1] < 1e-3);
             continue;
         }
-        assert!(!whole.stated && whole.misfit < 1e-9, "{:e}", whole.misfit);
+        assert!(!whole.stated && whole.rms_residual < 1e-9, "{:e}", whole.rms_residual);
         assert!(errors.largest[0] < 1e-6 * shape.support.mean(), "{:?}", errors.largest);
         let rounded = |value: f64| (value * 1e6).round() / 1e6;
         insta::assert_json_snapshot!(

@@ -260,14 +260,14 @@ fn a_step_along_a_bound_is_the_best_that_is_left() {
     let (_folder, experiment) = scene(POINT, "x = 1.0\nv = 0.5", more, 4);
     let update = &answers(&experiment)[0].track.updates[0];
     let (times, values) = (experiment.signals.times(), experiment.signals.column(0));
-    let misfit = |x: f64, v: f64| -> f64 {
+    let rms_residual = |x: f64, v: f64| -> f64 {
         times.iter().zip(values).map(|(t, read)| (x + v * t - read).powi(2)).sum()
     };
-    let own = misfit(update.estimate[0], update.estimate[1]);
+    let own = rms_residual(update.estimate[0], update.estimate[1]);
     for i in 0..=120 {
         for k in 0..=130 {
             let (x, v) = (0.01 * f64::from(i), -1.0 + 0.01 * f64::from(k));
-            assert!(misfit(x, v) > own - 1e-9, "{x} {v}");
+            assert!(rms_residual(x, v) > own - 1e-9, "{x} {v}");
         }
     }
     assert_eq!(update.at_bounds.len(), 2, "{:?}", update.estimate);

@@ -1,6 +1,6 @@
 //! What windows hand on, estimates over whole records, bounds, and a robust loss.
 //!
-//! Oracle: a point that moves at one speed, read with errors. The best line through all readings, its deviations and its misfit are
+//! Oracle: a point that moves at one speed, read with errors. The best line through all readings, its deviations and its residual are
 //! known in closed form (regression), whatever the windows.
 
 use crate::common::{folder, write};
@@ -180,7 +180,7 @@ fn windows_that_do_not_see_grow() {
     assert!(track.remarks[0].contains(&format!("grown to {rows} samples")), "{:?}", track.remarks);
     // every sample has one estimate, in order
     assert!(track.estimates.iter().map(|estimate| estimate.time).eq(times.iter().copied()));
-    assert_eq!(track.unseen, 0);
+    assert_eq!(track.unobserved, 0);
     // the last one knows all
     let last = track.updates.last().unwrap();
     let shifted: Vec<f64> = times.iter().map(|time| time - last.from).collect();

@@ -73,7 +73,7 @@ fn the_right_body_is_recognised() {
         let fit = body.fit.unwrap();
         assert_eq!(fit.degrees, 200);
         assert!(((fit.chi_square / 200.0).sqrt() - 1.0).abs() < 4.0 / 20.0, "{name}: {fit:?}");
-        assert!((body.misfit / 1e-4 - 1.0).abs() < 0.2, "{name}");
+        assert!((body.rms_residual / 1e-4 - 1.0).abs() < 0.2, "{name}");
         // the others are far off, and not by a little
         for other in [0, 2, 3] {
             let fit = found.bodies[other].fit.unwrap();

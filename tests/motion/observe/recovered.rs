@@ -44,10 +44,10 @@ fn the_scenes_are_as_they_were() {
             };
             let ends = updates.iter().map(end).collect::<Vec<_>>();
             let method = observer["method"].as_str().unwrap().to_owned();
-            let unseen = &observer["unobserved_samples"];
+            let unobserved = &observer["unobserved_samples"];
             methods.insert(
                 method,
-                json!({ "first_window": states, "standings": ends, "unobserved_samples": unseen }),
+                json!({ "first_window": states, "standings": ends, "unobserved_samples": unobserved }),
             );
         }
         let scene = json!({
@@ -126,8 +126,8 @@ fn a_turning_point_is_said_not_to_be_seen_and_is_integrated() {
     let track = &answer(&answers, Method::Newton).track;
     for update in &track.updates {
         let turns_here = update.from <= turns[0] && turns[0] <= update.to;
-        let unseen = matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
-        assert_eq!(unseen, turns_here, "{} to {}: {:?}", update.from, update.to, update.end);
+        let unobserved = matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
+        assert_eq!(unobserved, turns_here, "{} to {}: {:?}", update.from, update.to, update.end);
         if turns_here {
             let inside = track.estimates.iter().filter(|m| update.from < m.time && m.time <= update.to);
             let mut moved = 0;
@@ -139,7 +139,7 @@ fn a_turning_point_is_said_not_to_be_seen_and_is_integrated() {
                 moved += usize::from(moment.state[..2] != update.estimate[..2]);
             }
             assert!(moved > 70, "integrated and not held: {moved}");
-            assert_eq!(track.unseen, 80);
+            assert_eq!(track.unobserved, 80);
         } else {
             let worst = worst(&experiment, update);
             assert!(worst < 1e-8, "from {}: {worst:e}", update.from);

@@ -259,7 +259,7 @@ fn noise_that_is_not_stated_is_estimated() {
     let track = first(&silent(stated.clone()));
     let update = one(&track);
     let fit = update.fit.unwrap();
-    assert_eq!((update.end.clone(), fit.from), (UpdateEnd::Converged, NoiseFrom::Misfit));
+    assert_eq!((update.end.clone(), fit.from), (UpdateEnd::Converged, NoiseFrom::Residual));
     // the standard deviation of 157 errors is known to 1/sqrt(2 * 157), six percent
     assert!((fit.sigma / NOISE - 1.0).abs() < 0.25, "{fit:?}");
     let known = first(&stated);

@@ -201,17 +201,17 @@ fn judge(case: &Case<'_>, claim: &Claim<'_>, said: &Said, dice: &mut Dice, findi
             }
         }
         (About::Seen(unknown, wanted, set), word) => {
-            let (mut seen, mut unseen) = (0, 0);
+            let (mut seen, mut unobservable) = (0, 0);
             for place in 0..3 * set.components() {
                 let state = set.state(case.model, place % set.components(), false, dice);
                 let mut span = case.model.span(&case.found, &state, &mut || dice.generic());
-                *(if span.insert(case.model.unit(*unknown)) { &mut unseen } else { &mut seen }) += 1;
+                *(if span.insert(case.model.unit(*unknown)) { &mut unobservable } else { &mut seen }) += 1;
             }
-            let holds = if *wanted { unseen == 0 } else { seen == 0 };
+            let holds = if *wanted { unobservable == 0 } else { seen == 0 };
             if holds != (word == Word::Proved) {
                 fault(
                     "what is observable is not, or the other way round",
-                    format!("seen at {seen} states, not at {unseen}"),
+                    format!("seen at {seen} states, not at {unobservable}"),
                 );
             }
         }

@@ -28,7 +28,7 @@ pub struct ShapeEstimate {
     pub chi_square: f64,
     /// Samples less unknowns; at least one.
     pub degrees: usize,
-    /// By what factor the deviations grew because the misfit is larger than the weights explain; one where it is not.
+    /// By what factor the deviations grew because the residual is larger than the weights explain; one where it is not.
     pub widened: f64,
 }
 

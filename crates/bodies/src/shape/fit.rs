@@ -24,9 +24,9 @@ pub struct SupportSample {
 /// What weights are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SupportWeights {
-    /// Inverse variances. Where the misfit is larger than they explain the covariance grows with it; it never shrinks.
+    /// Inverse variances. Where the residual is larger than they explain the covariance grows with it; it never shrinks.
     InverseVariances,
-    /// Known up to a factor, which the misfit tells.
+    /// Known up to a factor, which the residual tells.
     Relative,
 }
 

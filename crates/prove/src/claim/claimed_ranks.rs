@@ -9,11 +9,13 @@ pub(crate) struct ClaimedRanks {
     pub least: usize,
     /// The greatest number there is where nothing is said.
     pub most: usize,
+    /// Whether bounds are claimed and no equation, be there one number between them or several.
+    pub are_bounds: bool,
 }
 
 impl ClaimedRanks {
     pub fn exactly(rank: usize) -> ClaimedRanks {
-        ClaimedRanks { least: rank, most: rank }
+        ClaimedRanks { least: rank, most: rank, are_bounds: false }
     }
 
     /// What `rank RELATION number` says; of several, what all of them do.
@@ -43,7 +45,8 @@ impl ClaimedRanks {
         }
         let number =
             |bound: i64| if bound == i64::MAX { usize::MAX } else { usize::try_from(bound).unwrap_or(0) };
-        Ok(ClaimedRanks { least: number(least), most: number(most) })
+        let are_bounds = relations.iter().any(|(relation, _)| *relation != Relation::Equal);
+        Ok(ClaimedRanks { least: number(least), most: number(most), are_bounds })
     }
 
     pub fn holds(self, rank: usize) -> bool {
@@ -55,11 +58,6 @@ impl ClaimedRanks {
         let (first, last) = (*ranks.start(), *ranks.end());
         let holds_of_all = self.least <= first && last <= self.most;
         holds_of_all || self.most < first || last < self.least
-    }
-
-    /// The number, where it is one.
-    pub fn number(self) -> Option<usize> {
-        (self.least == self.most).then_some(self.least)
     }
 }
 
@@ -97,8 +95,8 @@ mod tests {
     fn an_answer_that_further_rows_may_change_is_none() {
         let (equal, least, most) = (
             ClaimedRanks::exactly(3),
-            ClaimedRanks { least: 3, most: usize::MAX },
-            ClaimedRanks { least: 0, most: 3 },
+            ClaimedRanks { least: 3, most: usize::MAX, are_bounds: true },
+            ClaimedRanks { least: 0, most: 3, are_bounds: true },
         );
         for (found, stays) in [(2, [false, false, false]), (3, [false, true, false]), (4, [true, true, true])]
         {

@@ -53,17 +53,10 @@ pub(super) fn read(
         Question::Codistribution { claimed } => (None, *claimed),
         _ => return Err("'except where' is said of a rank".to_owned()),
     };
-    let may_be_greater = match rank.number() {
-        Some(_) => false,
-        None if rank.most == usize::MAX => true,
-        None => {
-            return Err(
-                "a rank is nowhere greater than it is generically: 'everywhere' and 'except where' take \
-                        rank = n or rank >= n"
-                    .to_owned(),
-            );
-        }
-    };
+    if rank.are_bounds && rank.most != usize::MAX {
+        return Err("'everywhere' and 'except where' take rank = n or rank >= n".to_owned());
+    }
+    let may_be_greater = rank.are_bounds;
     let rank = rank.least;
     for guard in guards_of_conditions(system, statement)? {
         add_guard(&system.graph, &mut guards, guard);
@@ -277,12 +270,12 @@ fn ranks_at(
             .and_then(|inputs| program.load(exact).ok()?.run(&inputs, &mut Vec::new()).ok())
             .unwrap_or_default();
         let matrix: Vec<Vec<RBig>> = values.chunks(width.max(1)).map(<[RBig]>::to_vec).collect();
-        let unseen = kernel(&Rationals { bits: BITS }, matrix, width).unwrap_or_default();
+        let unobservable = kernel(&Rationals { bits: BITS }, matrix, width).unwrap_or_default();
         ranked.push(RankedState {
             state: exact_state(&system.graph, state),
             rank: minor.rows.len(),
             minor,
-            kernel: unseen.into_iter().map(|v| v.into_iter().map(Ratio).collect()).collect(),
+            kernel: unobservable.into_iter().map(|v| v.into_iter().map(Ratio).collect()).collect(),
         });
     }
     let graph = &system.graph;

@@ -132,7 +132,7 @@ impl Question {
             }
             (Question::Identity { .. } | Question::Relations { .. }, _) => return None,
             (Question::Rank { claimed, .. } | Question::Codistribution { claimed }, _)
-                if claimed.number().is_none() =>
+                if claimed.are_bounds =>
             {
                 return Some(Evidence::Unchecked(BOUNDS_ARE_NOT_CHECKED.to_owned()));
             }

@@ -167,7 +167,7 @@ pub struct Outcome {
 
 impl Outcome {
     /// The verdict in a word: the fault's where the form in the text is refuted, if it can be stated, and the right one
-    /// proved; `restated`, `consequence` or `example` where a claim is proved that rests on that; else the verdict's own.
+    /// proved; `holds by definition`, `consequence` or `example` where a claim is proved that rests on that; else the verdict's own.
     pub fn word(&self) -> &'static str {
         match (self.fault, &self.printed) {
             (Some(fault), _) if self.ok => fault.word(),
@@ -191,7 +191,7 @@ impl Outcome {
     /// All words that an outcome can have, in the order in which reports count them.
     pub const WORDS: [&'static str; 12] = [
         "proved",
-        "restated",
+        "holds by definition",
         "definition",
         "consequence",
         "example",

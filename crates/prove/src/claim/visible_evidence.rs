@@ -221,10 +221,10 @@ fn certified(
     let program = Program::new(&system.graph, &expanded, is_angle);
     let field = PrimeField::random(&mut ChaCha8Rng::seed_from_u64(0x6d69_6e6f));
     let minor = largest_minor(&program, width, &point.state, field)?;
-    let unseen = kernel(&Rationals { bits: BITS }, rows.to_vec(), width).ok()?;
+    let unobservable = kernel(&Rationals { bits: BITS }, rows.to_vec(), width).ok()?;
     let mut found = listed_rank(system, on, matrix, &on.free_part(point), minor).ok()?;
     for state in &mut found.states {
-        state.kernel = unseen.iter().map(|v| v.iter().cloned().map(Ratio).collect()).collect();
+        state.kernel = unobservable.iter().map(|v| v.iter().cloned().map(Ratio).collect()).collect();
     }
     let confirmed = matches!(found.check(&Effort::new(WORK), &UNINTERRUPTED), Finding::Confirmed { .. });
     confirmed.then_some(found)

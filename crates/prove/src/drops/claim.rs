@@ -120,7 +120,8 @@ fn decided(
         claim.matrix.as_ref().map_or(usize::MAX, |(entries, columns)| entries.len() / (*columns).max(1));
     let mut log2_error = f64::NEG_INFINITY;
     let mut greatest = columns.min(height);
-    if claim.rank > greatest {
+    let is_too_high = claim.rank > greatest;
+    if is_too_high && claim.matrix.is_none() {
         return Err(format!("no rank there exceeds {greatest}"));
     }
     if claim.rank < greatest && !claim.may_be_greater {
@@ -133,17 +134,17 @@ fn decided(
     };
     let mentioned: Vec<NodeId> = claim.except.iter().flat_map(NamedSet::mentioned).collect();
     let asked = Asked {
-        rank: claim.rank,
+        rank: claim.rank.min(greatest),
         guards: claim.guards.clone(),
         conditions: claim.conditions.clone(),
         // where one equation describes a set, its left side does not vanish off it
         nonzero: claim.except.iter().filter_map(NamedSet::single).collect(),
         mentioned,
     };
-    if greatest > claim.rank && !claim.may_be_greater {
+    if is_too_high || greatest > claim.rank && !claim.may_be_greater {
         let all_rows = rows(system);
         return prepared(system, all_rows, &asked, seed, interrupt, |algebra, search| {
-            Ok(greater(algebra, search, claim, greatest))
+            Ok(another(algebra, search, claim, greatest))
         });
     }
     let all_rows = rows(system);
@@ -198,8 +199,8 @@ fn at_almost_all(system: &mut System, claim: &ClaimedEverywhere, seed: u64) -> R
     }
 }
 
-/// A state at which the rank is greater than claimed, as it is at almost all of them.
-fn greater(
+/// A state at which the rank is greater than claimed, as it is at almost all of them; or any state, where no matrix of this size has the rank.
+fn another(
     algebra: &mut Algebra<'_>,
     search: &mut Search<'_>,
     claim: &ClaimedEverywhere,
@@ -209,13 +210,16 @@ fn greater(
     let cases = search.all_cases(algebra).unwrap_or_default();
     let found = cases.iter().find_map(|case| {
         let state = state_on(algebra, search, case, &claim.except)?;
-        let found = rank_at(algebra, search, &state).filter(|found| *found > claim.rank)?;
+        let is_another =
+            |found: &usize| if claim.rank > greatest { *found <= greatest } else { *found > claim.rank };
+        let found = rank_at(algebra, search, &state).filter(is_another)?;
         Some((state, found))
     });
     match found {
         Some((state, found)) => {
             Everywhere::Refuted { state, found, set: Vec::new(), log2_error: f64::NEG_INFINITY }
         }
+        None if claim.rank > greatest => Everywhere::Open(format!("no rank exceeds {greatest}")),
         None => Everywhere::Open(format!("the generic rank is {greatest}")),
     }
 }

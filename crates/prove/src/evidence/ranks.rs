@@ -97,7 +97,7 @@ fn certified_rank(
         rank: recorded.rank,
         // a minor that is too small, or none, is seen by the checker
         minor: largest_minor(&program, width, &recorded.state, field).unwrap_or_default(),
-        kernel: recorded.unseen.iter().map(|v| v.iter().cloned().map(Ratio).collect()).collect(),
+        kernel: recorded.unobservable.iter().map(|v| v.iter().cloned().map(Ratio).collect()).collect(),
     };
     let share = Share::here();
     let mut states: Vec<RankedState> =

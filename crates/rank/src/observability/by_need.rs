@@ -21,7 +21,8 @@ const MOST_NODES: usize = 2_000_000;
 
 impl Codistribution {
     /// Takes only words that raise the rank by all coordinates that move, and of longer ones only those that continue one of these: over the
-    /// field of functions the differentials of all others lie in the span of theirs, and so do those of what continues them.
+    /// field of functions the differentials of all others lie in the span of theirs, and so do those of what continues them. On a set that
+    /// fields leave that is no reason: there they are taken where they show all that series have shown, and else what was taken before is.
     pub(super) fn take_by_need(
         &mut self,
         system: &mut System,
@@ -34,7 +35,8 @@ impl Codistribution {
         let outputs = (0..system.outputs.len()).map(|output| Word { fields: Vec::new(), output });
         let mut candidates: Vec<Word> = outputs.collect();
         let mut evaluated = EvaluatedRows::new(system);
-        let (mut stop, mut taken) = (Stop::NoGrowth, None);
+        let ended = if self.invariant { Stop::NoGrowth } else { self.stop };
+        let (mut stop, mut taken) = (ended, None);
         while !candidates.is_empty() {
             let before = chain.len();
             for word in candidates.drain(..) {
@@ -69,7 +71,7 @@ impl Codistribution {
             let rank = found.needed.len();
             taken = Some(found);
             if rank >= self.generic.at_most {
-                stop = if rank == system.unknown_count() { Stop::Full } else { Stop::NoGrowth };
+                stop = if rank == system.unknown_count() { Stop::Full } else { ended };
                 break;
             }
             if stop == Stop::TooMany {
@@ -84,10 +86,13 @@ impl Codistribution {
         }
         match taken {
             // what was taken before may name more
-            Some(taken) if stop != Stop::TooMany || taken.needed.len() > self.needed.len() => {
+            Some(taken)
+                if stop != Stop::TooMany && self.invariant || taken.needed.len() > self.needed.len() =>
+            {
                 *self = Codistribution { stop, ..taken };
             }
-            _ => self.stop = Stop::TooMany,
+            _ if self.invariant => self.stop = Stop::TooMany,
+            _ => {}
         }
         Ok(())
     }

@@ -190,6 +190,13 @@ impl Codistribution {
             Length::UntilItStops => (saturation.longest(LONGEST), if rests { MOST_WORDS } else { PATIENCE }),
             Length::Exactly(order) => (order, MOST_WORDS),
         };
+        // where fields leave the set the derivative that tells something may be of a higher order than there are coordinates
+        let longest = match length {
+            Length::UntilItStops if !rests && frame.generic.open.is_none() => {
+                longest.max(frame.generic.order)
+            }
+            _ => longest,
+        };
         // known signals that outputs tie have derivatives up to there
         let longest = system.longest_word().map_or(longest, |limit| longest.min(limit));
         let mut result = Codistribution::without_words(frame);

@@ -2,7 +2,7 @@
 
 use super::certainty::Certainty;
 use super::ladder::{RankDecider, StateDecision, StateReport};
-use super::unseen::UnseenDirections;
+use super::unobservable::UnseenDirections;
 use crate::observability::State;
 use palmistry_math::number::Rung;
 use std::collections::BTreeMap;
@@ -40,7 +40,7 @@ pub(super) struct SweepCounts {
     pub worst: Option<WorstState>,
     /// Of those in streams: by other numbers, which are compared in the end alone.
     pub worst_streamed: Option<WorstState>,
-    pub unseen: UnseenDirections,
+    pub unobservable: UnseenDirections,
     pub smallest_gap: Option<f64>,
     /// Whether not all states were looked at that were to be.
     pub interrupted: bool,
@@ -71,7 +71,7 @@ impl SweepCounts {
         add_all(&mut self.poles, later.poles);
         self.worst = WorstState::worse(self.worst, later.worst);
         self.worst_streamed = WorstState::worse(self.worst_streamed, later.worst_streamed);
-        self.unseen.append(later.unseen);
+        self.unobservable.append(later.unobservable);
         self.gap(later.smallest_gap);
         self.interrupted |= later.interrupted;
         self.seconds = self.seconds.zip(later.seconds).map(|(mine, theirs)| mine + theirs);
@@ -100,26 +100,26 @@ impl SweepCounts {
             }
             StateDecision::Report(report) => report,
         };
-        let StateReport { rank, certainty, rung, spectrum, computed, unseen, hidden, .. } = report;
+        let StateReport { rank, certainty, rung, spectrum, computed, unobservable, hidden, .. } = report;
         self.samples += 1;
         *self.ranks.entry(rank).or_insert(0) += 1;
         self.certified += u64::from(certainty == Certainty::Certified);
         *self.rungs.entry(rung).or_insert(0) += 1;
-        for direction in &unseen {
-            self.unseen.add(unknowns, direction, index);
+        for direction in &unobservable {
+            self.unobservable.add(unknowns, direction, index);
         }
         // one exact example of each kind is enough
         let mut without_example = hidden;
-        without_example.retain(|parts| !self.unseen.count(unknowns, parts));
+        without_example.retain(|parts| !self.unobservable.count(unknowns, parts));
         if !without_example.is_empty() {
-            let (mut unseen, mut exact) = (decider.unseen(state), true);
-            if unseen.is_empty() {
-                (unseen, exact) = (decider.unseen_nearly(state), false);
+            let (mut unobservable, mut exact) = (decider.unobservable(state), true);
+            if unobservable.is_empty() {
+                (unobservable, exact) = (decider.unseen_nearly(state), false);
             }
-            for direction in unseen {
+            for direction in unobservable {
                 let parts: Vec<bool> = direction.iter().map(|part| !part.is_zero()).collect();
                 if without_example.contains(&parts) {
-                    self.unseen.give_example(unknowns, &direction, exact, index);
+                    self.unobservable.give_example(unknowns, &direction, exact, index);
                 }
             }
         }

@@ -58,7 +58,8 @@ fn is_seen(system: &System, state: Symbol, swept: &SweepReport) -> bool {
     let is_full = swept.rank_histogram.keys().all(|rank| *rank == system.unknown_count());
     let is_told = swept.certified == swept.samples;
     is_full
-        || is_told && !swept.unseen.iter().any(|direction| direction.states.iter().any(|part| part == name))
+        || is_told
+            && !swept.unobservable.iter().any(|direction| direction.states.iter().any(|part| part == name))
 }
 
 /// How well each state is seen by the words that were needed, at up to two hundred states drawn from a locus; those that the

@@ -14,7 +14,9 @@
 
 use super::certainty::Certainty;
 use super::digits::{Digits, Matrices, NoDigits, NoEntries, digits_of};
-use crate::observability::{Defined, Reduction, Spectrum, State, certain_rank, kernel, singular_values};
+use crate::observability::{
+    Defined, Probe, Reduction, Spectrum, State, certain_rank, kernel, singular_values,
+};
 use dashu::rational::RBig;
 use palmistry_math::expression::{Failure, Graph, Loaded, NodeId, Program, Symbol};
 use palmistry_math::number::{
@@ -42,9 +44,11 @@ pub struct StateReport {
     pub computed: Option<usize>,
     /// Where the rank is short: a basis of the directions that no row sees, exactly; nothing where residues decided, which
     /// only know which unknowns take part ([`RankDecider::unseen`] has the rest).
-    pub unseen: Vec<Vec<RBig>>,
+    pub unobservable: Vec<Vec<RBig>>,
     /// The same basis as residues know it: of each direction the unknowns that take part.
     pub hidden: Vec<Vec<bool>>,
+    /// Whether the rows have this rank; else derivatives of higher order raise it.
+    pub is_of_rows: bool,
 }
 
 /// What deciding at one state came to.
@@ -131,7 +135,7 @@ enum NoValues {
 /// The rank at a state by exact numbers, and a basis of the directions that no row sees.
 struct ExactRank {
     rank: usize,
-    unseen: Vec<Vec<RBig>>,
+    unobservable: Vec<Vec<RBig>>,
 }
 
 /// The rank modulo a prime, and of a basis of what no row sees the unknowns that take part.
@@ -152,6 +156,8 @@ pub struct RankDecider<'g> {
     most: usize,
     field: PrimeField,
     wanted: Certainty,
+    /// What Lie derivatives of higher order than the rows' are looked at by, where the rows are short of `most`.
+    further: Option<Probe>,
 }
 
 impl<'g> RankDecider<'g> {
@@ -175,7 +181,15 @@ impl<'g> RankDecider<'g> {
             most: columns,
             field,
             wanted,
+            further: None,
         }
+    }
+
+    /// The same for rows that are the differentials of Lie derivatives up to an order that suffices at almost all states: where they are short
+    /// of that rank, those of higher order are looked at too.
+    #[must_use]
+    pub fn with_further_derivatives(self, of: Option<Probe>) -> Self {
+        RankDecider { further: of, ..self }
     }
 
     /// The same where no state's rank exceeds `most`, for certain.
@@ -201,6 +215,30 @@ impl<'g> RankDecider<'g> {
 
     /// The rank at a state.
     pub fn decide(&self, state: &State) -> StateDecision {
+        let mut decided = self.decide_rows(state);
+        if let (StateDecision::Report(report), Some(probe)) = (&mut decided, &self.further)
+            && report.rank < self.most
+            && let Some(rank) = probe.rank_at(state, self.field, 0, self.most)
+            && rank > report.rank
+        {
+            // what the rows here say of singular values and directions is not what all derivatives do
+            *report = StateReport {
+                rank,
+                certainty: if rank == self.most { Certainty::Certified } else { Certainty::Computed },
+                rung: Rung::Residues,
+                spectrum: None,
+                quick: false,
+                computed: None,
+                unobservable: Vec::new(),
+                hidden: Vec::new(),
+                is_of_rows: false,
+            };
+        }
+        decided
+    }
+
+    /// The rank of the rows at a state.
+    fn decide_rows(&self, state: &State) -> StateDecision {
         if let Some(undefined) = self.defined.failure(&self.graph, state) {
             return StateDecision::Pole(undefined);
         }
@@ -212,8 +250,9 @@ impl<'g> RankDecider<'g> {
             spectrum: None,
             quick: true,
             computed: None,
-            unseen: Vec::new(),
+            unobservable: Vec::new(),
             hidden: Vec::new(),
+            is_of_rows: true,
         };
         let mut residues = None;
         for rows in [&self.quick, &self.all] {
@@ -236,8 +275,8 @@ impl<'g> RankDecider<'g> {
         }
         if self.wanted == Certainty::Certified {
             match self.exact(state) {
-                Ok(ExactRank { rank, unseen }) => {
-                    (report.rank, report.unseen, report.rung) = (rank, unseen, Rung::Exact);
+                Ok(ExactRank { rank, unobservable }) => {
+                    (report.rank, report.unobservable, report.rung) = (rank, unobservable, Rung::Exact);
                     return StateDecision::Report(report);
                 }
                 Err(NoExactRank::Pole(pole)) => return StateDecision::Pole(pole),
@@ -323,8 +362,8 @@ impl<'g> RankDecider<'g> {
     }
 
     /// A basis of the directions that no row sees at a state, exactly; nothing where there is no exact arithmetic.
-    pub fn unseen(&self, state: &State) -> Vec<Vec<RBig>> {
-        self.exact(state).map(|found| found.unseen).unwrap_or_default()
+    pub fn unobservable(&self, state: &State) -> Vec<Vec<RBig>> {
+        self.exact(state).map(|found| found.unobservable).unwrap_or_default()
     }
 
     /// The same to many digits, where the rank there is no less than any: a number that is enclosed together with zero is taken for
@@ -370,8 +409,8 @@ impl<'g> RankDecider<'g> {
             None => NoExactRank::NotExact,
         })?;
         let rows = values.chunks(self.columns).map(<[RBig]>::to_vec).collect();
-        let unseen = kernel(&exact, rows, self.columns).map_err(|_| NoExactRank::NotExact)?;
-        Ok(ExactRank { rank: self.columns - unseen.len(), unseen })
+        let unobservable = kernel(&exact, rows, self.columns).map_err(|_| NoExactRank::NotExact)?;
+        Ok(ExactRank { rank: self.columns - unobservable.len(), unobservable })
     }
 
     /// A lower bound on the rank, by more and more bits until it is full; the rank by the last and most precise.

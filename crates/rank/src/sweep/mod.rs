@@ -31,7 +31,7 @@ mod solutions;
 mod states;
 mod stream;
 mod table;
-mod unseen;
+mod unobservable;
 
 pub use accessible::{
     AccessibilityAnswer, AccessibilityBranch, answer_accessibility, answer_accessibility_telling,
@@ -65,4 +65,4 @@ pub use stream::{
     Elimination, Jacobi, StateVerdict, StatesError, Stream, StreamOptions, StreamReport, Verdicts,
 };
 pub use table::{StateRow, StateTable};
-pub use unseen::UnobservableDirection;
+pub use unobservable::UnobservableDirection;

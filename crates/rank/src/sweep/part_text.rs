@@ -4,7 +4,7 @@
 
 use super::counts::{SweepCounts, WorstState};
 use super::part::{BranchCounts, RankPart};
-use super::unseen::{UnseenDirections, UnseenExample, UnseenKind};
+use super::unobservable::{UnseenDirections, UnseenExample, UnseenKind};
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
 use palmistry_io::parts::{Bits, CONTRADICTS, PartError, seal, unseal};
@@ -40,7 +40,7 @@ impl RankPart {
         };
         let consistent = |counts: &SweepCounts| {
             let has = |worst: Option<WorstState>| worst.is_none_or(|worst| range.contains(&worst.index));
-            let kinds = counts.unseen.0.iter().all(|(names, kind)| {
+            let kinds = counts.unobservable.0.iter().all(|(names, kind)| {
                 let of = |example: &UnseenExample| {
                     range.contains(&example.index) && example.vector.len() == names.len()
                 };
@@ -126,7 +126,7 @@ struct WrittenCounts {
     poles: BTreeMap<String, u64>,
     worst: Option<(u64, Bits)>,
     worst_streamed: Option<(u64, Bits)>,
-    unseen: Vec<WrittenKind>,
+    unobservable: Vec<WrittenKind>,
     smallest_gap: Option<Bits>,
 }
 
@@ -203,7 +203,7 @@ impl WrittenCounts {
             poles: counts.poles.clone(),
             worst: counts.worst.map(worst),
             worst_streamed: counts.worst_streamed.map(worst),
-            unseen: counts.unseen.0.iter().map(kind).collect(),
+            unobservable: counts.unobservable.0.iter().map(kind).collect(),
             smallest_gap: counts.smallest_gap.map(|gap| Bits(gap.to_bits())),
         }
     }
@@ -229,7 +229,7 @@ impl WrittenCounts {
             poles: self.poles,
             worst: self.worst.map(worst),
             worst_streamed: self.worst_streamed.map(worst),
-            unseen: UnseenDirections(self.unseen.into_iter().map(kind).collect()),
+            unobservable: UnseenDirections(self.unobservable.into_iter().map(kind).collect()),
             smallest_gap: self.smallest_gap.map(|Bits(bits)| f64::from_bits(bits)),
             interrupted: false,
             seconds: None,

@@ -8,7 +8,7 @@ use super::ladder::{DecidedRows, ProofWanted, RankDecider, StateDecision, StateR
 use super::states::{RecordedState, Stretch, SweepOptions, SweepReport, Told};
 use super::stream::{Stream, StreamOptions};
 use super::table::{StateRow, TableOf, put_in};
-use crate::observability::{Codistribution, Defined, Locus, LocusError, Spectrum, State};
+use crate::observability::{Codistribution, Defined, Locus, LocusError, Probe, Spectrum, State};
 use palmistry_budget::Share;
 use palmistry_lang::System;
 use palmistry_math::expression::{Graph, NodeId, add_guard, expand_angles};
@@ -71,6 +71,11 @@ impl PreparedSweep {
         let (most, rows) = (options.most, [quick, all, guards]);
         let (seed, wanted) = (options.seed, options.wanted);
         PreparedSweep { locus: locus.clone(), stream, decider, seed, wanted, most, rows }
+    }
+
+    /// The same, where at states at which the rows are short of the rank at almost all of them derivatives of higher order are looked at.
+    pub fn looking_further(self, by: Option<Probe>) -> PreparedSweep {
+        PreparedSweep { decider: self.decider.with_further_derivatives(by), ..self }
     }
 
     /// What is decided, to the last bit, as a number.
@@ -265,7 +270,7 @@ impl PreparedSweep {
             poles: counts.poles,
             worst: worst.map(|(state, spectrum)| (state.describe(system), spectrum)),
             digits,
-            unseen: counts.unseen.into_list(at)?,
+            unobservable: counts.unobservable.into_list(at)?,
             smallest_gap: counts.smallest_gap.unwrap_or(f64::INFINITY),
             interrupted: counts.interrupted,
             recorded,
@@ -289,18 +294,22 @@ impl PreparedSweep {
             _ if told.interrupt.load(Ordering::Relaxed) => None,
             StateDecision::Report(StateReport {
                 rank,
-                unseen,
+                unobservable,
                 hidden,
                 certainty: Certainty::Certified,
+                is_of_rows: true,
                 ..
             }) => {
-                let unseen =
-                    if hidden.is_empty() { unseen } else { share.carry(|| self.decider.unseen(&state)) };
+                let unobservable = if hidden.is_empty() {
+                    unobservable
+                } else {
+                    share.carry(|| self.decider.unobservable(&state))
+                };
                 // a short rank is checked by what is not seen, exactly
-                (rank + unseen.len() == self.decider.columns()).then_some(RecordedState {
+                (rank + unobservable.len() == self.decider.columns()).then_some(RecordedState {
                     state,
                     rank,
-                    unseen,
+                    unobservable,
                 })
             }
             _ => None,

@@ -122,14 +122,18 @@ impl PreparedBranch {
             progress: question.progress,
         };
         // words that somebody asked for are looked at as they are; functions have no residues at a state
-        let by_series =
-            codistribution.is_cut_off() && question.order.is_none() && system.time == Time::Continuous;
-        let probe = by_series.then(|| Probe::new(system, &conditions)).filter(|probe| !probe.has_functions());
+        let has_series = wanted && question.order.is_none() && system.time == Time::Continuous;
+        let probe =
+            has_series.then(|| Probe::new(system, &conditions)).filter(|probe| !probe.has_functions());
         let full = match probe {
-            Some(probe) => ByStates::Series(Box::new(PreparedSeries::new(system, &locus, probe, &options))),
-            None => {
+            Some(probe) if codistribution.is_cut_off() => {
+                ByStates::Series(Box::new(PreparedSeries::new(system, &locus, probe, &options)))
+            }
+            probe => {
                 let quick = codistribution.needed_entries();
-                ByStates::Rows(Box::new(PreparedSweep::new(system, &locus, &quick, &all, &options)))
+                let further = probe.filter(|_| system.longest_word().is_none());
+                let rows = PreparedSweep::new(system, &locus, &quick, &all, &options);
+                ByStates::Rows(Box::new(rows.looking_further(further)))
             }
         };
         let rows = own.filter(|_| wanted).map(|(rows, guards)| {
@@ -267,12 +271,12 @@ fn motions(
     given: &[Symbol],
 ) -> Option<UnobservableDirections> {
     let found = codistribution.generic.rank().unwrap_or(codistribution.generic_rank());
-    let unseen = found < system.unknown_count();
+    let unobservable = found < system.unknown_count();
     let of_states = |system: &System, symbol: &Symbol, value: NodeId| {
         let mentioned = system.graph.symbols_of([value]);
         [*symbol].iter().chain(&mentioned).any(|symbol| system.states.contains(symbol))
     };
-    if !unseen || conditions.iter().any(|(symbol, value)| of_states(system, symbol, *value)) {
+    if !unobservable || conditions.iter().any(|(symbol, value)| of_states(system, symbol, *value)) {
         return None;
     }
     let given = given.iter().map(|symbol| (*symbol, conditions[symbol])).collect();

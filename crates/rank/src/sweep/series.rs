@@ -108,7 +108,7 @@ impl PreparedSeries {
             poles: counts.poles,
             worst: None,
             digits: told.digits.map(|_| Err(super::NoDigits::NoState)),
-            unseen: Vec::new(),
+            unobservable: Vec::new(),
             smallest_gap: f64::INFINITY,
             interrupted: counts.interrupted,
             recorded: Vec::new(),

@@ -2,7 +2,7 @@
 
 use super::certainty::Certainty;
 use super::digits::{Digits, NoDigits};
-use super::unseen::UnobservableDirection;
+use super::unobservable::UnobservableDirection;
 use crate::observability::{GenericAnswer, Observability, Spectrum, State, StateInWords};
 use dashu::rational::RBig;
 use palmistry_lang::System;
@@ -60,7 +60,7 @@ pub struct RecordedState {
     /// Its rank.
     pub rank: usize,
     /// A basis of the directions that no row sees, exactly.
-    pub unseen: Vec<Vec<RBig>>,
+    pub unobservable: Vec<Vec<RBig>>,
 }
 
 /// What a sweep has found.
@@ -89,7 +89,7 @@ pub struct SweepReport {
     /// Its singular values to as many digits as were wanted, if any were.
     pub digits: Option<Result<Digits, NoDigits>>,
     /// What is not seen where the rank is short.
-    pub unseen: Vec<UnobservableDirection>,
+    pub unobservable: Vec<UnobservableDirection>,
     /// The smallest gap on which a computed rank rests.
     pub smallest_gap: f64,
     /// Whether it was stopped early.
@@ -147,7 +147,7 @@ impl GenericAnswer {
         );
         // a part that is told is no zero, also where it is known to many digits only
         let takes_part = |name: &str| {
-            report.unseen.iter().any(|direction| direction.states.iter().any(|state| state == name))
+            report.unobservable.iter().any(|direction| direction.states.iter().any(|state| state == name))
         };
         for ((symbol, seen), surely) in self.unknowns.iter_mut().zip(&self.seen_at_most) {
             if *surely || self.at_least == self.dimension {

@@ -20,7 +20,7 @@ pub(crate) fn meaning(word: &str) -> &'static str {
         "proved" => {
             "derived: the two sides come from different premises, and an exact argument shows that they are equal"
         }
-        "restated" => {
+        "holds by definition" => {
             "the two sides are one expression once names are put in: a field or a formula written down again; where it is \
              derived is named"
         }
@@ -68,6 +68,7 @@ pub(crate) fn numbered(count: usize, word: &str) -> String {
         (_, "definition" | "consequence" | "example" | "scanning fault" | "convention") => {
             format!("{count} {word}s")
         }
+        (_, "holds by definition") => format!("{count} hold by definition"),
         _ => format!("{count} {word}"),
     }
 }

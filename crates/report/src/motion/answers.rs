@@ -141,7 +141,7 @@ pub(super) fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
         "seconds": update.seconds,
         "condition": finite(update.condition),
         "cost": finite(update.cost),
-        "residual": finite(update.misfit),
+        "residual": finite(update.rms_residual),
         "states": states(observed, update.from, &update.estimate, Some(&update.deviations)),
     });
     if let UpdateEnd::Blind { weakest } = &update.end {
@@ -231,7 +231,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
         let mut found = json!({
             "method": answer.method.name(),
             "seconds": answer.seconds,
-            "unobserved_samples": answer.track.unseen,
+            "unobserved_samples": answer.track.unobserved,
             "remarks": answer.track.remarks,
             "together": together_json(answer.track.together()),
             "innovations": innovations_json(answer.track.innovations),
@@ -358,8 +358,8 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
             let known = Beside { bounds: &at.deviations, at_bounds: &[], worth: "" };
             state_lines(&mut text, observed, &names, at.time, &at.state, known);
         }
-        if answer.track.unseen > 0 {
-            let _ = writeln!(text, "  not observable for {} of {samples} samples", answer.track.unseen);
+        if answer.track.unobserved > 0 {
+            let _ = writeln!(text, "  not observable for {} of {samples} samples", answer.track.unobserved);
         }
         for other in &answer.track.others {
             let _ = writeln!(

@@ -12,7 +12,7 @@ pub(super) fn finite(value: f64) -> Value {
 pub(super) fn noise_from(from: NoiseFrom) -> &'static str {
     match from {
         NoiseFrom::Stated => "stated",
-        NoiseFrom::Misfit => "residual",
+        NoiseFrom::Residual => "residual",
         NoiseFrom::Computation => "computation",
     }
 }
@@ -44,35 +44,39 @@ pub(super) fn fit_in_words(update: &Update) -> String {
 fn explained(fit: &Fit) -> String {
     match fit.from {
         NoiseFrom::Stated => format!("passes the chi-square test ({})", p_in_words(fit.probability)),
-        NoiseFrom::Misfit => format!("residuals are white noise of {:.1e}", fit.sigma),
+        NoiseFrom::Residual => format!("residuals are white noise of {:.1e}", fit.sigma),
         NoiseFrom::Computation => "residuals are rounding errors".to_owned(),
     }
 }
 
-/// Why a misfit is not explained.
+/// Why a residual is not explained.
 pub(super) fn unexplained(update: &Update, fit: &Fit) -> String {
-    let (misfit, probability) = (update.misfit, fit.probability);
+    let (rms_residual, probability) = (update.rms_residual, fit.probability);
     match fit.from {
         _ if fit.degrees == 0 => "there are no more measurements than unknowns".to_owned(),
         NoiseFrom::Stated if fit.has_outliers() => {
             format!("{} measurements are outliers, more than a tenth", fit.outliers)
         }
         NoiseFrom::Stated if fit.by_drift().is_some() => format!(
-            "residuals of {misfit:.1e} for a noise of {:.1e}, and they drift, those of {} most: {}",
+            "residuals of {rms_residual:.1e} for a noise of {:.1e}, and they drift, those of {} most: {}",
             fit.sigma,
             update.drifting.as_deref().unwrap_or("an output"),
             p_in_words(probability)
         ),
         NoiseFrom::Stated if fit.is_by_neighbours() => format!(
-            "residuals of {misfit:.1e} for a noise of {:.1e}, correlated with their neighbours: {}",
+            "residuals of {rms_residual:.1e} for a noise of {:.1e}, correlated with their neighbours: {}",
             fit.sigma,
             p_in_words(probability)
         ),
         NoiseFrom::Stated => {
-            format!("residuals of {misfit:.1e} for a noise of {:.1e}: {}", fit.sigma, p_in_words(probability))
+            format!(
+                "residuals of {rms_residual:.1e} for a noise of {:.1e}: {}",
+                fit.sigma,
+                p_in_words(probability)
+            )
         }
         _ => format!(
-            "the residuals, {misfit:.1e}, are no white noise (neighbours so alike have the probability {probability:.1e})"
+            "the residuals, {rms_residual:.1e}, are no white noise (neighbours so alike have the probability {probability:.1e})"
         ),
     }
 }

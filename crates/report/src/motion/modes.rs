@@ -46,7 +46,7 @@ fn update_json(estimate: &ModeEstimate) -> Value {
         "name": estimate.name,
         "fits": estimate.fits(),
         "status": end_name(&update.end),
-        "residual": finite(update.misfit),
+        "residual": finite(update.rms_residual),
         "chi_square": update.fit.map(|fit| finite(fit.chi_square)),
         "degrees_of_freedom": update.fit.map(|fit| fit.degrees),
         "states": states,
@@ -83,7 +83,7 @@ pub fn modes_text(experiment: &Experiment, windows: &[ModeWindow]) -> String {
         let _ = write!(text, "  {:.3} s to {:.3} s: ", window.from, window.to);
         let Some(estimate) = window.chosen.map(|place| &window.estimates[place]) else {
             let least = window.estimates.iter().filter_map(|estimate| estimate.update.as_ref());
-            let least = least.map(|update| update.misfit).fold(f64::INFINITY, f64::min);
+            let least = least.map(|update| update.rms_residual).fold(f64::INFINITY, f64::min);
             if window.estimates.iter().any(|estimate| estimate.rank.is_some()) {
                 let _ = writeln!(text, "no observer answers");
                 window.estimates.iter().for_each(|estimate| rank_line(&mut text, estimate));
@@ -96,8 +96,8 @@ pub fn modes_text(experiment: &Experiment, windows: &[ModeWindow]) -> String {
         let others: Vec<&str> = others.map(|other| other.name.as_str()).collect();
         let also =
             if others.is_empty() { String::new() } else { format!(" ({} fit worse)", others.join(", ")) };
-        let misfit = estimate.update.as_ref().map_or(f64::NAN, |update| update.misfit);
-        let _ = writeln!(text, "{}{also}, residual {misfit:.1e}{}", estimate.name, truth(window));
+        let rms_residual = estimate.update.as_ref().map_or(f64::NAN, |update| update.rms_residual);
+        let _ = writeln!(text, "{}{also}, residual {rms_residual:.1e}{}", estimate.name, truth(window));
         window.estimates.iter().for_each(|estimate| rank_line(&mut text, estimate));
         if let Some(update) = &estimate.update {
             state_lines(&mut text, experiment, &estimate.sought, update);

@@ -3,8 +3,8 @@
 use crate::motion::answers::Observed;
 use crate::motion::outline_plot::{band_picture, outline_picture};
 use crate::motion::reconstruction::{
-    EXPLAINED, apart_in_words, convexity_in_words, from_in_words, gaps, length, misfit_in_words,
-    model_in_words, no_shape_in_words, reasons, reconstruction, sizes_in_words, truth, widened_in_words,
+    EXPLAINED, apart_in_words, convexity_in_words, from_in_words, gaps, length, model_in_words,
+    no_shape_in_words, reasons, reconstruction, residual_in_words, sizes_in_words, truth, widened_in_words,
     widest,
 };
 use crate::motion::shape::support_error;
@@ -38,7 +38,7 @@ pub(super) fn shape_section(observed: &Observed<'_>) -> Markup {
             "the function is " (convexity_in_words(shape))
             @if let Some(apart) = &found.apart { "; " (apart_in_words(apart)) }
             @match &found.whole {
-                Some(whole) => { "; " (misfit_in_words(whole, shape)) }
+                Some(whole) => { "; " (residual_in_words(whole, shape)) }
                 None if shape.widened > EXPLAINED => { "; " (widened_in_words(shape)) }
                 None => {}
             }

@@ -50,7 +50,7 @@ pub(super) fn recognition_text(found: &Recognition) -> String {
                 let _ = writeln!(text, "; at the first sample {angle} rad, {rate} rad/s");
             }
             false if body.fit.is_some() => {
-                let _ = writeln!(text, "; the residual is {:.1e} m (rms)", body.misfit);
+                let _ = writeln!(text, "; the residual is {:.1e} m (rms)", body.rms_residual);
             }
             false => text.push('\n'),
         }
@@ -71,7 +71,7 @@ pub(super) fn recognition_json(found: &Recognition) -> Value {
             "chi_square": body.fit.map(|fit| finite(fit.chi_square)),
             "degrees_of_freedom": body.fit.map(|fit| fit.degrees),
             "probability": body.fit.map(|fit| finite(fit.probability)),
-            "residual": finite(body.misfit),
+            "residual": finite(body.rms_residual),
             "orientation": measured_json(body.orientation),
             "rate": measured_json(body.rate),
         })
@@ -92,7 +92,7 @@ pub(super) fn recognition_section(found: &Recognition) -> Markup {
                             td { b { (body.name) } }
                             td { (standing(body)) }
                             @if body.fit.is_some() {
-                                td.n { (format!("{:.1e}", body.misfit)) }
+                                td.n { (format!("{:.1e}", body.rms_residual)) }
                                 td.n { (measured(body.orientation)) }
                                 td.n { (measured(body.rate)) }
                             } @else {

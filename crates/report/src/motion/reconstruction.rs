@@ -10,7 +10,7 @@ use palmistry_scenes::{
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// A misfit that is larger than the noise by more than this factor is said.
+/// A residual that is larger than the noise by more than this factor is said.
 pub(super) const EXPLAINED: f64 = 1.1;
 
 /// Angles of which bands and errors are taken.
@@ -129,7 +129,7 @@ pub(super) fn shape_text(experiment: &Experiment, answers: &[Answer]) -> String 
     let _ = writeln!(text, "  {}", convexity_in_words(shape));
     text.extend(found.apart.iter().map(|apart| format!("  {}\n", apart_in_words(apart))));
     if let Some(whole) = &found.whole {
-        let _ = writeln!(text, "  {}", misfit_in_words(whole, shape));
+        let _ = writeln!(text, "  {}", residual_in_words(whole, shape));
         if let Some(gyration) = whole.gyration {
             let _ = write!(text, "  rho {:.9} m ± {:.1e}", gyration.value, gyration.deviation);
             match experiment.simulation.as_ref().and_then(|s| s.constants.get("rho")) {
@@ -158,8 +158,8 @@ pub(super) fn widened_in_words(shape: &ShapeEstimate) -> String {
     format!("the residuals are {:.1} times what bounds explain, and the band is as much wider", shape.widened)
 }
 
-pub(super) fn misfit_in_words(whole: &WholeMotion, shape: &ShapeEstimate) -> String {
-    let left = format!("contacts are explained to {} (rms)", length(whole.misfit));
+pub(super) fn residual_in_words(whole: &WholeMotion, shape: &ShapeEstimate) -> String {
+    let left = format!("contacts are explained to {} (rms)", length(whole.rms_residual));
     match (shape.widened > EXPLAINED, whole.stated) {
         (true, true) => {
             format!(
@@ -316,7 +316,7 @@ pub(super) fn shape_json(experiment: &Experiment, answers: &[Answer]) -> Option<
     json["degrees_of_freedom"] = json!(shape.degrees);
     json["widened"] = finite(shape.widened);
     if let Some(whole) = &found.whole {
-        json["residual"] = finite(whole.misfit);
+        json["residual"] = finite(whole.rms_residual);
         json["noise"] = finite(whole.sigma);
         json["noise_is_stated"] = json!(whole.stated);
         if let Some(gyration) = whole.gyration {

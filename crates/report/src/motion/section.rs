@@ -192,8 +192,8 @@ fn headline(observed: &Observed<'_>) -> Markup {
                 Some(_) => { " does not end with a number for each of " (names.join(", ")) }
                 None => { " looked for " (names.join(", ")) }
             }
-            @if answer.track.unseen > 0 {
-                "; " b { "it could not see for " (answer.track.unseen) " of " (observed.experiment.signals.times().len()) " samples" }
+            @if answer.track.unobserved > 0 {
+                "; " b { "it could not see for " (answer.track.unobserved) " of " (observed.experiment.signals.times().len()) " samples" }
             }
             @if let Some(pace) = pace(observed, answer) { "; " (pace) }
             "."

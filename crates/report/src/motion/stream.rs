@@ -23,7 +23,7 @@ pub fn stream_json(report: &WindowReport<'_>) -> Value {
             "updates": answer.updates.iter().map(|update| update_json(&observed, update)).collect::<Vec<_>>(),
             "fits_as_well": answer.others.iter().map(|other| update_json(&observed, other)).collect::<Vec<_>>(),
             "end": end,
-            "unobserved_samples": answer.unseen,
+            "unobserved_samples": answer.unobserved,
             "remarks": answer.remarks,
         })
     };

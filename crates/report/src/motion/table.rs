@@ -195,10 +195,10 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
     let mut lines = Vec::new();
     for answer in observed.answers {
         let name = answer.method.name();
-        if answer.track.unseen > 0 {
+        if answer.track.unobserved > 0 {
             lines.push(format!(
                 "{name} could not see for {} of {samples} samples, and held what it believed or integrated",
-                answer.track.unseen
+                answer.track.unobserved
             ));
         }
         for update in &answer.track.updates {

@@ -9,11 +9,10 @@ use super::unknowns::unknowns;
 use crate::formula::conditions_mathml;
 use crate::plot;
 use crate::ranks::{deviation_text, taken_for_granted};
-use crate::structure::{DiagramGround, NodeVerdict, structure_picture};
+use crate::structure::{DiagramGround, structure_picture};
 use maud::{Markup, PreEscaped, html};
 use palmistry_lang::Looks;
 use palmistry_prove::claim::Outcome;
-use palmistry_rank::observability::Observability;
 use palmistry_rank::sweep::RankAnswer;
 use palmistry_workbench::paper::{
     DerivativesFound, FileFindings, LineFound, MapFound, ReductionFound, SetRank,
@@ -64,18 +63,8 @@ pub(super) fn file_section(anchor: &str, file: &FileFindings, claims: &Markup, u
 /// Which state stands in whose rate, with what is observable.
 fn structure(file: &FileFindings) -> Markup {
     let branch = file.ranks.first().and_then(|rank| rank.answer().ok()?.branches.first());
-    let verdict = |name: &str| {
-        let unknowns =
-            branch.into_iter().flat_map(|branch| branch.unknowns.iter().zip(&branch.generic.unknowns));
-        let found = unknowns.filter(|((own, _), _)| own == name).map(|(_, (_, seen))| *seen).next();
-        match found {
-            Some(Observability::Yes) => NodeVerdict::Observable,
-            Some(Observability::No) => NodeVerdict::Unobservable,
-            _ => NodeVerdict::Open,
-        }
-    };
     html! {
-        @if let Some(picture) = structure_picture(&file.system, &verdict, DiagramGround::Page) {
+        @if let Some(picture) = structure_picture(&file.system, branch, DiagramGround::Page) {
             figure {
                 (PreEscaped(picture))
                 figcaption {
@@ -194,11 +183,11 @@ fn reduction(found: &ReductionFound, looks: &Looks) -> Markup {
     }
 }
 
-fn unseen(answer: &RankAnswer, own: bool) -> Vec<String> {
+fn unobservable(answer: &RankAnswer, own: bool) -> Vec<String> {
     let mut found = Vec::new();
     for branch in &answer.branches {
         let report = if own { branch.rows.as_ref() } else { Some(&branch.full) };
-        for direction in report.into_iter().flat_map(|report| &report.unseen) {
+        for direction in report.into_iter().flat_map(|report| &report.unobservable) {
             let text = direction.states.join(", ");
             if !found.contains(&text) {
                 found.push(text);
@@ -243,10 +232,10 @@ fn ranks(ranks: &[SetRank], looks: &Looks) -> Markup {
                         @match rank.answer() {
                             Ok(answer) => {
                                 td.k { b { (ranks_in_words(answer, false)) } " of " (answer.dimension) }
-                                td { (in_symbols(&unseen(answer, false), looks)) }
+                                td { (in_symbols(&unobservable(answer, false), looks)) }
                                 @if has_own {
                                     td { b { (ranks_in_words(answer, true)) } }
-                                    td { (in_symbols(&unseen(answer, true), looks)) }
+                                    td { (in_symbols(&unobservable(answer, true), looks)) }
                                 }
                                 td.w { @for words in distinct_words(answer) { div { (words) } } }
                                 td.n { (answer.branches.iter().map(|b| b.full.samples).sum::<u64>()) }

@@ -16,7 +16,14 @@ const FEW: usize = 6;
 
 /// The system as mathematics: its letters with their units, fields, outputs, and what abbreviations stand for.
 pub fn system_mathematics(system: &System) -> Markup {
-    let SystemAsWritten { fields, outputs, definitions } = system.as_written();
+    let SystemAsWritten { fields, mut outputs, definitions } = system.as_written();
+    let experiments = 1 + outputs
+        .iter()
+        .filter_map(|text| text.rsplit_once('@')?.1.parse::<usize>().ok())
+        .map(|n| n - 1)
+        .max()
+        .unwrap_or(0);
+    outputs.retain(|text| text.rsplit_once('@').is_none_or(|(_, behind)| behind.parse::<usize>().is_err()));
     let looks = &system.looks;
     let mark = if system.time == Time::Discrete { "\u{207a}" } else { "\u{2032}" };
     let abbreviations = html! {
@@ -26,6 +33,7 @@ pub fn system_mathematics(system: &System) -> Markup {
     };
     html! {
         (letters(system))
+        @if experiments > 1 { p { (experiments) " experiments with the same constants." } }
         @for field in &fields { (field_rows(field, mark, looks)) }
         @if !outputs.is_empty() {
             @if outputs.iter().all(|text| text.len() < SHORT) {

@@ -124,8 +124,8 @@ fn header(found: &Findings, links: Markup) -> Markup {
                 p {
                     b { "Proved" } " is exact arithmetic with the probability of an error stated, " b { "refuted" }
                     " a state in exact numbers at which the two sides differ, " b { "erratum" }
-                    " a printed form refuted and its corrected form proved. " b { "Restated" }
-                    " is no proof: the two sides are one expression once names are put in."
+                    " a printed form refuted and its corrected form proved. " b { "Holds by definition" }
+                    ": the two sides are one expression once names are put in, so that there is nothing to prove."
                 }
             }
             p.y {

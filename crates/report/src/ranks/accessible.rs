@@ -22,9 +22,9 @@ fn bounds_json(bounds: &RankBounds) -> Value {
 fn branch_json(branch: &AccessibilityBranch) -> Value {
     let mut sampled = branch.sampled.as_ref().map_or(Value::Null, sweep_json);
     if let Some(fields) = sampled.as_object_mut()
-        && let Some(unseen) = fields.remove("unobservable")
+        && let Some(unobservable) = fields.remove("unobservable")
     {
-        fields.insert("unmoved".to_owned(), unseen);
+        fields.insert("unmoved".to_owned(), unobservable);
     }
     json!({
         "conditions": branch.conditions,
@@ -129,7 +129,7 @@ fn sampled_text(branch: &AccessibilityBranch, report: &SweepReport, out: &mut St
         let _ = writeln!(out, "  rank {rank:>2} at {count} states{more}");
     }
     let _ = writeln!(out, "  certified at {} of {} states", report.certified, report.samples);
-    for direction in &report.unseen {
+    for direction in &report.unobservable {
         let _ = writeln!(
             out,
             "  no bracket moves, at {} states: a combination of {}; for one, {} = 0",

@@ -86,7 +86,7 @@ pub(super) fn sweep_json(report: &SweepReport) -> Value {
         "not_computed": report.samples - report.computed_histogram.values().sum::<u64>(),
         "smallest_gap": finite(report.smallest_gap),
         "worst_conditioned": worst,
-        "unobservable": report.unseen.iter().map(|direction| json!({
+        "unobservable": report.unobservable.iter().map(|direction| json!({
             "states": direction.states,
             "count": direction.count,
             "example": direction.example,
@@ -204,12 +204,16 @@ fn sampled_text(title: &str, report: &SweepReport, out: &mut String) {
     }
 }
 
-/// Unobservable directions at single states.
-fn directions_text(report: &SweepReport, out: &mut String) {
-    for direction in &report.unseen {
+/// Unobservable directions at single states; where the rank there is lower than elsewhere, by Lie derivatives up to this order alone.
+fn directions_text(report: &SweepReport, short_up_to: Option<usize>, out: &mut String) {
+    let unobservable = match short_up_to {
+        Some(order) => format!("not observable by Lie derivatives up to order {order}"),
+        None => "unobservable".to_owned(),
+    };
+    for direction in &report.unobservable {
         item(
             &format!(
-                "at {} unobservable: a direction in {}; for one, {}",
+                "at {} {unobservable}: a direction in {}; for one, {}",
                 counted(direction.count, "state"),
                 direction.states.join(", "),
                 direction.example
@@ -336,13 +340,19 @@ fn branch_text(branch: &BranchAnswer, details: bool, out: &mut String) {
     sampled_text("at sampled states", &branch.full, out);
     // fields that were found say the same for all states
     let is_known = branch.motions.as_ref().is_some_and(|found| found.fields_missing == 0);
+    let lower = branch.full.rank_histogram.range(..branch.generic_rank).map(|(_, count)| count).sum::<u64>();
     if details || !is_known {
-        directions_text(&branch.full, out);
+        directions_text(&branch.full, (lower > 0).then_some(branch.order), out);
     }
     digits_text(&branch.full, out);
-    let lower = branch.full.rank_histogram.range(..branch.generic_rank).map(|(_, count)| count).sum::<u64>();
     if lower > 0 {
-        item(&format!("rank-deficient at {lower} of them: --where-it-drops gives the singular set"), out);
+        item(
+            &format!(
+                "rank-deficient at {lower} of them, by Lie derivatives up to order {}: --where-it-drops gives the singular set, by those of all orders",
+                branch.order
+            ),
+            out,
+        );
     }
     if details {
         let longest = branch.order;
@@ -352,7 +362,7 @@ fn branch_text(branch: &BranchAnswer, details: bool, out: &mut String) {
     }
     if let Some(rows) = &branch.rows {
         sampled_text("rows of the file at the same states", rows, out);
-        directions_text(rows, out);
+        directions_text(rows, None, out);
         digits_text(rows, out);
         if details {
             sweep_details(rows, out);

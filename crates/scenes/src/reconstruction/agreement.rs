@@ -41,7 +41,7 @@ fn farthest(names: &[&str], update: &Update, whole: &WholeMotion) -> Option<(f64
         let most = whole.samples.iter().map(|at| of(at).value.abs()).fold(0.0, f64::max);
         let place = names.iter().position(|other| *other == name)?;
         let by_window = Measured { value: update.estimate[place], deviation: update.deviations[place] };
-        let is_exact = !whole.stated && whole.misfit <= NOMINAL;
+        let is_exact = !whole.stated && whole.rms_residual <= NOMINAL;
         let computed = if is_exact { KINKED * most } else { COMPUTED * most };
         let deviation = by_window.deviation.hypot(of_all.deviation).hypot(computed);
         let off = (by_window.value - of_all.value).abs() / deviation;

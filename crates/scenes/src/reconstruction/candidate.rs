@@ -10,12 +10,12 @@ use std::sync::atomic::AtomicBool;
 #[derive(Clone)]
 pub(super) struct Found {
     pub unknowns: Unknowns,
-    /// Of the free unknowns, with what the misfit adds.
+    /// Of the free unknowns, with what the residual adds.
     pub covariance: DMatrix<f64>,
     pub shape: ShapeEstimate,
     pub motion: Vec<Followed>,
     /// The root of the mean square of what is left of a contact, in m.
-    pub misfit: f64,
+    pub rms_residual: f64,
     /// The logarithm of the probability of the readings, but for a constant of the record.
     pub evidence: f64,
     /// The radius of gyration, [`CERTAIN`] deviations taken off where it was sought, in m.
@@ -180,7 +180,7 @@ impl WholeRecord {
     }
 
     /// The root of the mean square of what is left of a contact, in m, by the sum of its squares.
-    pub fn misfit(&self, cost: f64, rows: usize) -> f64 {
+    pub fn rms_residual(&self, cost: f64, rows: usize) -> f64 {
         self.sigma * (cost / (2 * rows) as f64).sqrt()
     }
 
@@ -223,11 +223,11 @@ impl WholeRecord {
             degrees: n.saturating_sub(free.round() as usize).max(1),
             widened: 1.0,
         };
-        let misfit = self.misfit(chi_square, self.times.len());
+        let rms_residual = self.rms_residual(chi_square, self.times.len());
         // its logarithm is what is sought
         let off = self.place_of_gyration().map_or(0.0, |place| covariance[(place, place)].max(0.0).sqrt());
         let least_gyration = unknowns.gyration * (-CERTAIN * off).exp();
-        Found { unknowns, covariance, shape, motion, misfit, evidence, least_gyration, is_sure: true }
+        Found { unknowns, covariance, shape, motion, rms_residual, evidence, least_gyration, is_sure: true }
     }
 
     /// The length by which coefficients are measured beforehand, in m: twice the mean of what was read, from which a body that touches both palms cannot be far.

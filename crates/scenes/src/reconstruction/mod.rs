@@ -35,7 +35,7 @@ use record::WholeRecord;
 use std::sync::atomic::AtomicBool;
 use whole::Told;
 
-/// All readings at once are believed whose misfit is below this part of the mean radius, or a few times the noise: else it is another model.
+/// All readings at once are believed whose residual is below this part of the mean radius, or a few times the noise: else it is another model.
 const BELIEVED: f64 = 1e-3;
 const BELIEVED_NOISE: f64 = 5.0;
 
@@ -133,7 +133,7 @@ impl Experiment {
         let Some(told) = record.tell(&starts, stated, interrupt) else { return Err(None) };
         let mean = told.best.shape.support.mean();
         let most = (BELIEVED * mean).max(BELIEVED_NOISE * stated);
-        if told.best.misfit <= most && mean > 0.0 { Ok((record, told)) } else { Err(None) }
+        if told.best.rms_residual <= most && mean > 0.0 { Ok((record, told)) } else { Err(None) }
     }
 }
 
@@ -216,7 +216,7 @@ fn whole_motion(record: &WholeRecord, told: &Told) -> WholeMotion {
     WholeMotion {
         samples: samples.collect(),
         gyration,
-        misfit: told.best.misfit,
+        rms_residual: told.best.rms_residual,
         sigma: record.sigma,
         stated: record.stated,
     }

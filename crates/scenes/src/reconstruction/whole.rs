@@ -25,7 +25,7 @@ const PARTS: [f64; 4] = [0.15, 0.3, 0.6, 1.0];
 /// Fewer rows than these are no part.
 const FEWEST: usize = 24;
 
-/// A misfit below this part of the mean radius is one of the shape; a larger one is one of a motion that is another.
+/// A residual below this part of the mean radius is one of the shape; a larger one is one of a motion that is another.
 const FOUND: f64 = 1e-2;
 
 /// So many ends of searches with few harmonics go on to all orders.
@@ -69,10 +69,11 @@ impl WholeRecord {
             }
             false => {
                 let mut all = self.by_what_is_left(series, interrupt)?;
-                let least = all.iter().min_by(|a, b| a.misfit.total_cmp(&b.misfit)).cloned();
-                let others = least.map(|least| (least.misfit, self.elsewhere(starts, &least, interrupt)));
+                let least = all.iter().min_by(|a, b| a.rms_residual.total_cmp(&b.rms_residual)).cloned();
+                let others =
+                    least.map(|least| (least.rms_residual, self.elsewhere(starts, &least, interrupt)));
                 let (least, others) = others.unwrap_or_default();
-                let is_less = |other: &Found| !other.is_spline() && other.misfit < SMALLER * least;
+                let is_less = |other: &Found| !other.is_spline() && other.rms_residual < SMALLER * least;
                 if let Some(better) = others.iter().find(|other| is_less(other)) {
                     // what the first one left was not noise
                     self.sigma = UNSTATED * self.size();
@@ -114,13 +115,14 @@ impl WholeRecord {
             // harmonics without an end may be those of a kink
             if all[0].shape.support.order() > Self::ORDER_OF_SMOOTH {
                 let splines = self.splines(&all[0], false, interrupt);
-                all.extend(splines.into_iter().filter(|spline| spline.misfit <= NOMINAL));
+                all.extend(splines.into_iter().filter(|spline| spline.rms_residual <= NOMINAL));
             }
             return Some(all);
         }
         self.sigma = unstated;
         let mut splines = self.splines(&first, false, interrupt);
-        let least = |splines: &[Found]| splines.iter().map(|at| at.misfit).fold(f64::INFINITY, f64::min);
+        let least =
+            |splines: &[Found]| splines.iter().map(|at| at.rms_residual).fold(f64::INFINITY, f64::min);
         if least(&splines) > NOMINAL {
             self.sigma = left;
             let is_noise = self.alike(&series) < ALIKE;
@@ -129,14 +131,14 @@ impl WholeRecord {
             series = first;
         }
         let least = least(&splines);
-        if least > SMALLER * series.misfit {
+        if least > SMALLER * series.rms_residual {
             let again = splines.iter().filter_map(|spline| self.spline_again(spline, interrupt));
             let again: Vec<Found> = again.collect();
             return Some([vec![series], again].concat());
         }
         // the series leaves what the readings do not have
         let sigma = std::mem::replace(&mut self.sigma, least.max(NOMINAL));
-        let again = splines.iter().filter(|spline| spline.misfit <= 2.0 * self.sigma);
+        let again = splines.iter().filter(|spline| spline.rms_residual <= 2.0 * self.sigma);
         let again: Vec<Found> = again.filter_map(|spline| self.spline_again(spline, interrupt)).collect();
         if again.is_empty() {
             self.sigma = sigma;
@@ -148,7 +150,7 @@ impl WholeRecord {
     /// The deviation of a contact that a candidate leaves, in m.
     fn left(&self, found: &Found) -> f64 {
         let n = found.shape.samples as f64;
-        (found.misfit * (n / found.shape.degrees as f64).sqrt()).max(NOMINAL)
+        (found.rms_residual * (n / found.shape.degrees as f64).sqrt()).max(NOMINAL)
     }
 
     fn spline_again(&self, spline: &Found, interrupt: &AtomicBool) -> Option<Found> {
@@ -174,7 +176,7 @@ impl WholeRecord {
                 break;
             }
         }
-        let is_found = |best: &Best| self.misfit(best.cost, rows) < FOUND * best.x.support.mean();
+        let is_found = |best: &Best| self.rms_residual(best.cost, rows) < FOUND * best.x.support.mean();
         if !best.as_ref().is_some_and(is_found) && !stop() {
             best = best
                 .into_iter()
@@ -277,7 +279,7 @@ impl WholeRecord {
     }
 
     fn is_exact(&self, found: &Found) -> bool {
-        found.misfit <= EXACT * self.size()
+        found.rms_residual <= EXACT * self.size()
     }
 
     /// Whether what is left counts as more independent numbers than there are unknowns. Where it does not it is a curve: nothing says how large errors are, and the

@@ -97,7 +97,7 @@ pub struct ObserverSettings {
     pub whole: bool,
     /// `bounds`: between what some of what is sought lies.
     pub bounds: BTreeMap<String, [f64; 2]>,
-    /// `loss`: how misfits are weighed; by their squares unless given.
+    /// `loss`: how residuals are weighed; by their squares unless given.
     pub loss: Loss,
     /// `[observer.shooting]`.
     pub shooting: Shooting,

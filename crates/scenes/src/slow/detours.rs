@@ -81,7 +81,7 @@ fn led(together: &Together<'_>, found: &SlowShape, turn: usize, forwards: bool) 
     let mut last = phi0[if forwards { turn - 1 } else { turn }];
     let rows: Vec<usize> = if forwards { (turn..phi0.len()).collect() } else { (0..turn).rev().collect() };
     // as the whole is held against its readings
-    let sigma = found.sigma.max(found.misfit);
+    let sigma = found.sigma.max(found.rms_residual);
     let (mut square, mut borne_out, mut turns, mut count) = (0.0, 0, 0.0, 0);
     let mut is_lost = false;
     for row in rows {

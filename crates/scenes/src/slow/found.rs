@@ -22,7 +22,7 @@ pub struct SlowShape {
     /// Radii, orientations, heights at the samples. The orientation is in the frame of the shape.
     pub track: SlowTrack,
     /// The root of the mean square of what is left of a contact, in m.
-    pub misfit: f64,
+    pub rms_residual: f64,
     /// The deviation of a reading with which it was held against, in m.
     pub sigma: f64,
     /// The least of the potential's second derivatives at the samples, in parts of the mean radius.
@@ -34,6 +34,6 @@ impl SlowShape {
     /// that is another leaves more, if only a quarter more: a body that is nearly its own mirror image does.
     pub fn explains(&self, part: f64) -> bool {
         let most = 1.0 + CERTAIN / (2.0 * self.shape.samples as f64).sqrt();
-        self.misfit <= (most * self.sigma).max(part * self.shape.support.mean())
+        self.rms_residual <= (most * self.sigma).max(part * self.shape.support.mean())
     }
 }

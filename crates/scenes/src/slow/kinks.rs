@@ -77,12 +77,13 @@ pub(super) fn with_kinks(
     let is_asked = !together.is_noisy()
         && found.kinks.is_empty()
         && found.order >= SLOWLY
-        && found.misfit > NOTHING_LEFT * together.sigma
+        && found.rms_residual > NOTHING_LEFT * together.sigma
         && found.explains(EXACT);
     if !is_asked {
         return found;
     }
-    let better = search(&together, &found, interrupt).filter(|better| better.misfit < LOWER * found.misfit);
+    let better = search(&together, &found, interrupt)
+        .filter(|better| better.rms_residual < LOWER * found.rms_residual);
     better.unwrap_or(found)
 }
 
@@ -101,11 +102,11 @@ fn search(together: &Together<'_>, found: &SlowShape, interrupt: &dyn Fn() -> bo
         };
         let with = from_peaks(together, &series, &found.track.phi0, interrupt);
         if let Some(with) = with
-            && best.as_ref().is_none_or(|best| with.misfit < best.misfit)
+            && best.as_ref().is_none_or(|best| with.rms_residual < best.rms_residual)
         {
             best = Some(with);
         }
-        if best.as_ref().is_some_and(|best| best.misfit < FOUND * found.misfit) || interrupt() {
+        if best.as_ref().is_some_and(|best| best.rms_residual < FOUND * found.rms_residual) || interrupt() {
             break;
         }
     }

@@ -16,11 +16,11 @@ const MOST_NOISY: usize = 48;
 /// Orders in a row that tell nothing end the ladder.
 const PATIENCE: usize = 2;
 
-/// From an order on, a misfit above this part of the mean contact and so many deviations is that of another motion.
+/// From an order on, a residual above this part of the mean contact and so many deviations is that of another motion.
 const HOPELESS: [(usize, f64); 3] = [(16, 3e-2), (32, 1e-2), (64, 3e-3)];
 const HOPELESS_NOISE: f64 = 5.0;
 
-/// Parts of the readings that are explained one after the other, and a misfit with which it is not gone on, in deviations.
+/// Parts of the readings that are explained one after the other, and a residual with which it is not gone on, in deviations.
 const PARTS: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
 const HOPELESS_PART: f64 = 20.0;
 
@@ -80,15 +80,16 @@ impl Together<'_> {
             };
             let Some(begin) = begin else { continue };
             let end = self.without_lost(self.down(begin, interrupt), interrupt);
-            let misfit = (end.left.rows(0, readings).norm_squared() / readings as f64).sqrt() * self.sigma;
+            let rms_residual =
+                (end.left.rows(0, readings).norm_squared() / readings as f64).sqrt() * self.sigma;
             if HOPELESS.iter().any(|(from, part)| {
-                order >= *from && misfit > (HOPELESS_NOISE * self.readings.sigma).max(part * self.size)
+                order >= *from && rms_residual > (HOPELESS_NOISE * self.readings.sigma).max(part * self.size)
             }) {
                 // another start: harmonics do not mend a motion that is another
                 best = best.or(Some(end));
                 break;
             }
-            let is_enough = misfit <= orders.enough * end.coefficients[0];
+            let is_enough = rms_residual <= orders.enough * end.coefficients[0];
             last = Some(end.clone());
             if best.as_ref().is_none_or(|best| criterion(&end) < criterion(best)) {
                 best = Some(end);
@@ -147,7 +148,7 @@ impl Together<'_> {
             near[..rows].copy_from_slice(&explained.track.phi0);
             near[rows..].iter_mut().for_each(|phi0| *phi0 += turned);
             support = SupportSeries::of_coefficients(&explained.shape.support.coefficients());
-            if explained.misfit > HOPELESS_PART * explained.sigma.max(1e-3 * readings.scale()) {
+            if explained.rms_residual > HOPELESS_PART * explained.sigma.max(1e-3 * readings.scale()) {
                 return Some(explained).filter(|_| rows == readings.rows());
             }
             found = Some(explained);

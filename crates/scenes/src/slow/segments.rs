@@ -216,7 +216,7 @@ pub fn from_segments(readings: &SlowMeasurements, interrupt: &dyn Fn() -> bool) 
             let orders = Orders { least: growth.support.order(), ..Orders::CHOSEN };
             let whole = together.explain(&growth.support, &growth.phi0, orders, interrupt);
             if let Some(whole) = whole
-                && best.as_ref().is_none_or(|best| whole.misfit < best.misfit)
+                && best.as_ref().is_none_or(|best| whole.rms_residual < best.rms_residual)
             {
                 best = Some(whole);
             }

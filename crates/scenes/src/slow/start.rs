@@ -176,7 +176,7 @@ fn search(
     let mut best: Option<SlowShape> = None;
     let better = |best: &mut Option<SlowShape>, found: Option<SlowShape>| {
         if let Some(found) = found
-            && best.as_ref().is_none_or(|best| found.misfit < best.misfit)
+            && best.as_ref().is_none_or(|best| found.rms_residual < best.rms_residual)
         {
             *best = Some(found);
         }

@@ -338,7 +338,7 @@ impl<'a> Together<'a> {
         let height = self.sampled.iter().zip(&radii).map(|(sampled, radii)| sampled.height(*radii));
         SlowShape {
             track: SlowTrack { height: height.collect(), phi0: at.phi0.clone(), radii },
-            misfit: (chi_square / (2 * rows) as f64).sqrt() * self.sigma,
+            rms_residual: (chi_square / (2 * rows) as f64).sqrt() * self.sigma,
             sigma: self.sigma,
             stiffness: at.stiffness / support.mean,
             order: outline.order(),

@@ -119,7 +119,7 @@ pub struct SolidState {
     /// How many of them are free: the constraints less the unknowns.
     pub degrees: usize,
     /// The root of the mean square of the errors that contacts had to have, in m.
-    pub misfit: f64,
+    pub rms_residual: f64,
     /// J. von Neumann's ratio of what is left, white: about 2 where it is noise.
     pub ratio: f64,
     /// The deviation that contacts were weighed with, in m: where none was stated a millionth of the body.
@@ -195,7 +195,7 @@ impl SolidState {
         let differences = n + UNKNOWNS as f64;
         let is_small = !self.is_stated || self.chi_square <= n + 5.0 * (2.0 * n).sqrt();
         let is_noise = self.contacts_are_stated
-            || self.misfit <= EXACT * self.weighed
+            || self.rms_residual <= EXACT * self.weighed
             || self.ratio >= 2.0 - 5.0 * (4.0 / differences).sqrt();
         is_small && is_noise
     }

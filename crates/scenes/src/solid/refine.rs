@@ -29,7 +29,7 @@ pub(super) struct Refined {
     bent: f64,
     /// Another end of the search that explains the readings as well.
     pub rival: Option<Rival>,
-    misfit: f64,
+    rms_residual: f64,
     /// J. von Neumann's ratio of the white residuals: about 2 where these are noise.
     pub ratio: f64,
     /// The deviation that contacts were weighed with, in m.
@@ -135,7 +135,7 @@ impl Refined {
             rival: None,
             bent: 1.0,
             is_minimum: bent.is_none_or(|(_, is_minimum)| is_minimum),
-            misfit: deviations.contact * (contacts / (6 * errors.len()) as f64).sqrt(),
+            rms_residual: deviations.contact * (contacts / (6 * errors.len()) as f64).sqrt(),
             ratio,
             weighed: deviations.contact,
         }
@@ -201,7 +201,7 @@ impl Refined {
             rival: None,
             chi_square: self.chi_square,
             degrees,
-            misfit: self.misfit,
+            rms_residual: self.rms_residual,
             ratio: self.ratio,
             weighed: self.weighed,
             contacts_are_stated: self.corrected.contact_deviation > 0.0,

@@ -200,7 +200,7 @@ fn a_wrong_state_that_leaves_little_says_so() {
     for (scene, moments) in held(3, 89) {
         let Some(state) = readings(&scene, &moments, 0.0, 1).first_state() else { continue };
         let error = relative_error(&state.entries(), &true_entries(&scene, &moments[0]));
-        assert!(error < 1e-6 || !state.fits(), "{error:e}, {:e} m left", state.misfit);
+        assert!(error < 1e-6 || !state.fits(), "{error:e}, {:e} m left", state.rms_residual);
     }
     // noise that is not stated is told from what it leaves, which looks like noise
     let (scene, moments) = figure_5_3(89, 3.52);
@@ -213,12 +213,12 @@ fn a_wrong_state_that_leaves_little_says_so() {
     let state = refine::refine(&unstated, &rules, begin, &scale, &deviations).unwrap().state().unwrap();
     assert!(!state.is_stated && state.fits(), "{}", state.ratio);
     // what a wrong state leaves is alike from sample to sample; torques that are said to err do not excuse it
-    let alike = SolidState { ratio: 0.5, misfit: 0.5 * state.weighed, chi_square: 1.0, ..state };
+    let alike = SolidState { ratio: 0.5, rms_residual: 0.5 * state.weighed, chi_square: 1.0, ..state };
     for is_stated in [false, true] {
         assert!(!SolidState { is_stated, ..alike.clone() }.fits(), "{is_stated}");
     }
     assert!(SolidState { is_stated: true, contacts_are_stated: true, ..alike }.fits());
-    assert!(state.misfit > 2e-5 && state.misfit < 1e-4, "{:e}", state.misfit);
+    assert!(state.rms_residual > 2e-5 && state.rms_residual < 1e-4, "{:e}", state.rms_residual);
 }
 
 /// With noise no entry errs by more than the bound allows, and chi-square is what its degrees say.

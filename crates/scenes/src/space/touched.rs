@@ -48,7 +48,7 @@ pub(super) fn chained(updates: &[SpaceUpdate], stated: f64) -> Option<(Vec<Surfa
             });
             all.extend(moved);
         }
-        left = left.max(update.state.as_ref().map_or(0.0, |state| state.misfit));
+        left = left.max(update.state.as_ref().map_or(0.0, |state| state.rms_residual));
         if let Some(last) = update.poses.last() {
             turn *= last.turn.transpose();
         }

@@ -121,8 +121,8 @@ impl<'a> Observing<'a> {
             };
             let is_heard = tell(&report);
             arriving.buffer.first += count - 1;
-            let unseen = self.so_far.learned.iter().flatten().map(|learned| learned.rows_unseen());
-            arriving.buffer.again = unseen.max().unwrap_or(0);
+            let unobserved = self.so_far.learned.iter().flatten().map(|learned| learned.rows_unobserved());
+            arriving.buffer.again = unobserved.max().unwrap_or(0);
             arriving.buffer.drop_before();
             if !is_heard {
                 arriving.end.cut_off = Some("nobody reads the answers any more".to_owned());
@@ -169,9 +169,9 @@ impl<'a> Observing<'a> {
     }
 
     fn answer(&mut self, buffer: &Buffer, count: usize) -> Result<Vec<StreamAnswer>, SceneError> {
-        let rows_unseen =
-            |learned: &Option<Arc<Learned>>| learned.as_ref().map_or(0, |learned| learned.rows_unseen());
-        let again: Vec<usize> = self.so_far.learned.iter().map(rows_unseen).collect();
+        let rows_unobserved =
+            |learned: &Option<Arc<Learned>>| learned.as_ref().map_or(0, |learned| learned.rows_unobserved());
+        let again: Vec<usize> = self.so_far.learned.iter().map(rows_unobserved).collect();
         let mut signals: BTreeMap<usize, Signals> = BTreeMap::new();
         for again in &again {
             if !signals.contains_key(again) {
@@ -197,7 +197,7 @@ impl<'a> Observing<'a> {
                 tally.innovations = Some(tally.innovations.map_or(own, |before| before.with(own)));
             }
             tally.believed[0] += track.estimates.len();
-            tally.believed[1] += track.unseen;
+            tally.believed[1] += track.unobserved;
             answers.push(StreamAnswer {
                 method: tally.method,
                 deviations: track.learned.as_ref().and_then(|learned| learned.deviations.clone()),
@@ -205,7 +205,7 @@ impl<'a> Observing<'a> {
                 updates: track.updates,
                 others: track.others,
                 remarks: remark.iter().cloned().chain(track.remarks).collect(),
-                unseen: track.unseen,
+                unobserved: track.unobserved,
             });
             *learned = track.learned.or(task.learned);
         }

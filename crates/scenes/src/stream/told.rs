@@ -33,7 +33,7 @@ pub struct StreamAnswer {
     /// What else is to be said.
     pub remarks: Vec<String>,
     /// Samples at which it could not see.
-    pub unseen: usize,
+    pub unobserved: usize,
 }
 
 /// A window of a stream.
@@ -99,8 +99,8 @@ impl StreamTally {
 
     /// Whether a method that does not work by windows passes; see [`passes_unwindowed`].
     pub fn passes(&self) -> bool {
-        let [believed, unseen] = self.believed;
-        passes_unwindowed(believed, unseen, self.innovations.as_ref())
+        let [believed, unobserved] = self.believed;
+        passes_unwindowed(believed, unobserved, self.innovations.as_ref())
     }
 }
 

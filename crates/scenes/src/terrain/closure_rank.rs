@@ -36,11 +36,11 @@ impl ComputedRank {
         let singular_values: Vec<f64> = order.iter().map(|place| svd.singular_values[*place]).collect();
         let largest = singular_values.first().copied().unwrap_or(0.0);
         let rank = singular_values.iter().filter(|value| **value > COUNTED * largest).count();
-        let unseen = |unknown: usize| {
+        let unobserved = |unknown: usize| {
             let part = |place: &usize| svd.v_t.as_ref().map_or(1.0, |v| v[(*place, unknown)].powi(2));
             order[rank..].iter().map(part).sum::<f64>().sqrt()
         };
-        let told = (0..unknowns).map(|unknown| unseen(unknown) < TOLD).collect();
+        let told = (0..unknowns).map(|unknown| unobserved(unknown) < TOLD).collect();
         ComputedRank { rank, singular_values, told }
     }
 

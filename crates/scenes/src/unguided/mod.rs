@@ -81,7 +81,7 @@ pub struct FirstState {
     /// The least standard deviations that `r1`, `r2` and `omega0` can have, by the stated noise of the contacts; zeros where none is stated.
     pub deviations: [f64; 3],
     /// The root of the mean square by which the contacts would have to be elsewhere.
-    pub misfit: f64,
+    pub rms_residual: f64,
 }
 
 impl PalmMeasurements {

@@ -150,6 +150,6 @@ fn first_state(all: &Integrals, end: &End) -> FirstState {
         deviations: all
             .sigma
             .map_or([0.0; 3], |sigma| deviations(all, end).map(|deviation| sigma * deviation)),
-        misfit: (cost / (2.0 * all.samples.len() as f64)).sqrt(),
+        rms_residual: (cost / (2.0 * all.samples.len() as f64)).sqrt(),
     }
 }

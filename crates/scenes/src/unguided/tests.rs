@@ -84,7 +84,7 @@ fn errors_are_as_large_as_the_bound() {
             velocity: moment.velocity,
             receding: [0.0; 2],
             deviations: [0.0; 3],
-            misfit: 0.0,
+            rms_residual: 0.0,
         };
         let bound = exact.bound_at(&truth).unwrap();
         let mut squares = [0.0; 3];

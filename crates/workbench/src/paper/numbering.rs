@@ -30,7 +30,7 @@ impl NumberedEquation<'_> {
         let has = |word: &&str| self.entries.iter().any(|outcome| outcome.word() == *word);
         let matters = Flaw::ALL.map(Flaw::word).into_iter().chain(["undecided"]).find(has);
         let own = || self.entries.iter().find(|outcome| outcome.id == self.number);
-        let parts = ["example", "consequence", "restated", "proved", "definition"];
+        let parts = ["example", "consequence", "holds by definition", "proved", "definition"];
         matters
             .or_else(|| own().map(|outcome| outcome.word()))
             .or_else(|| parts.into_iter().find(has))

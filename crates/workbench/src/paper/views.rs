@@ -186,8 +186,8 @@ fn map_by_default(system: &System, observable: &[String]) -> Option<MapView> {
     };
     let of = (observable.len() < system.unknown_count()).then(|| observable[0].clone());
     let title = match &of {
-        None => "what the outputs tell".to_owned(),
-        Some(name) => format!("what the outputs tell of {name}"),
+        None => "how well the worst state is observable".to_owned(),
+        Some(name) => format!("how well {name} is observable"),
     };
     Some(MapView {
         title,

@@ -82,7 +82,7 @@ pub enum Fence {
 }
 
 /// How a name looks.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct FormulaName {
     /// The system that it comes from, of `general.f`.
     pub(super) from: Vec<String>,
@@ -95,7 +95,7 @@ pub struct FormulaName {
 }
 
 /// What stands above a letter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Accent {
     Dot,
     TwoDots,

@@ -14,12 +14,12 @@ fn answer(text: &str) -> (System, GenericAnswer) {
 /// The rank by bounds, and the names of what is not seen.
 fn found(text: &str) -> (usize, usize, Vec<String>) {
     let (system, answer) = answer(text);
-    let unseen = answer.unknowns.iter().filter(|(_, seen)| *seen == Observability::No);
-    let unseen = unseen.map(|(symbol, _)| system.symbol_name(*symbol).to_owned()).collect();
+    let unobservable = answer.unknowns.iter().filter(|(_, seen)| *seen == Observability::No);
+    let unobservable = unobservable.map(|(symbol, _)| system.symbol_name(*symbol).to_owned()).collect();
     if answer.at_most < answer.dimension {
         assert!(answer.log2_error < -100.0, "{answer:?}");
     }
-    (answer.at_least, answer.at_most, unseen)
+    (answer.at_least, answer.at_most, unobservable)
 }
 
 #[test]

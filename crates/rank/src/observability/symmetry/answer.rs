@@ -44,7 +44,7 @@ pub struct ObservableFunction {
 pub(super) struct UnseenBlock {
     pub states: Vec<Symbol>,
     /// How many unobservable directions there are among them.
-    pub unseen: usize,
+    pub unobservable: usize,
     /// The functions of these states, among all functions.
     pub functions: Range<usize>,
 }

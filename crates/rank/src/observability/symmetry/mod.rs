@@ -90,8 +90,8 @@ impl Attempt {
         let source = of_words.unwrap_or_else(|| KernelSource::of_series(system, values, &coordinates, rng));
         let points = (0..POINTS).filter_map(|_| source.sample(None, rng));
         let (point, kernel) = points.min_by_key(|(_, kernel)| kernel.basis.len())?;
-        let unseen = kernel.basis.len();
-        if words.is_some_and(|words| coordinates.len() - words.generic_rank() != unseen) {
+        let unobservable = kernel.basis.len();
+        if words.is_some_and(|words| coordinates.len() - words.generic_rank() != unobservable) {
             return None;
         }
         let blocks = blocks(&point, &kernel);
@@ -106,11 +106,12 @@ impl Attempt {
         let motion = motion(system, values);
         let rows = rows.as_deref().filter(|_| has_these_words);
         attempt.prove_fields(system, &source, &motion, rows, &mut of_blocks, rng);
-        attempt.found.fields_missing = unseen - attempt.found.fields.len();
+        attempt.found.fields_missing = unobservable - attempt.found.fields.len();
         // the rank at a point modulo a prime bounds the rank from below, if no function was taken for another
         attempt.found.settles_the_rank = attempt.is_complete()
             && (!source.has_functions()
-                || generic_answer(system, values, Ceiling::Rests).at_least >= coordinates.len() - unseen);
+                || generic_answer(system, values, Ceiling::Rests).at_least
+                    >= coordinates.len() - unobservable);
         attempt.functions(system, (&source, &kernel), &blocks, &of_blocks, &motion, rng);
         attempt.measured(system, words, &motion, &blocks, rng);
         attempt.found.seen = (0..coordinates.len())
@@ -209,7 +210,7 @@ impl Attempt {
             }
             self.found.blocks.push(UnseenBlock {
                 states: block.columns.iter().map(|column| source.coordinate(*column)).collect(),
-                unseen: block.free.len(),
+                unobservable: block.free.len(),
                 functions: begin..self.found.functions.len(),
             });
         }
@@ -270,7 +271,7 @@ impl Attempt {
                 // it may be one of several blocks
                 self.found.blocks = vec![UnseenBlock {
                     states: columns.iter().map(|column| unknowns[*column]).collect(),
-                    unseen: self.found.directions(),
+                    unobservable: self.found.directions(),
                     functions: 0..self.found.functions.len(),
                 }];
             }

@@ -23,7 +23,7 @@ pub(super) fn sections(
     let mut found: Vec<(usize, Assignment)> = Vec::new();
     let mut tried = 0;
     // how many of the fixed coordinates are nought, and which: scalings want a one, translations a nought, angles always that
-    for fixed in subsets(block.states.len(), block.unseen) {
+    for fixed in subsets(block.states.len(), block.unobservable) {
         let free: Vec<usize> =
             fixed.iter().copied().filter(|at| !system.is_angle(block.states[*at])).collect();
         for zeros in 0..1usize << free.len().min(6) {

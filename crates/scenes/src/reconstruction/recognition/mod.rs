@@ -93,7 +93,7 @@ impl Experiment {
             name: name.to_owned(),
             orientation: unknown,
             rate: unknown,
-            misfit: f64::NAN,
+            rms_residual: f64::NAN,
             fit: None,
         };
         let Some(end) = candidate.best(interrupt) else { return lost };
@@ -111,7 +111,7 @@ impl Experiment {
         LibraryAnswer {
             orientation: measured(0, end.first[0].rem_euclid(std::f64::consts::TAU)),
             rate: measured(1, end.first[1]),
-            misfit: differences.norm() / ((2 * rows) as f64).sqrt(),
+            rms_residual: differences.norm() / ((2 * rows) as f64).sqrt(),
             fit: Some(fit),
             ..lost
         }

@@ -98,12 +98,11 @@ impl<'a> FormulaLayout<'a> {
             }
         }
         let means_something = |name: &str| {
-            !own.contains_key(name)
-                && FormulaName::of(name).is_some_and(|look| {
-                    look.from.is_empty()
-                        && (WORDS.contains(&look.letters.as_str()) && name != "rank"
-                            || look.letters == "L" && derives && !look.index.is_empty())
-                })
+            look_of(name, own).is_some_and(|look| {
+                look.from.is_empty()
+                    && (WORDS.contains(&look.letters.as_str()) && name != "rank"
+                        || look.letters == "L" && derives && !look.index.is_empty())
+            })
         };
         let shared = |(_, names): (String, Vec<String>)| {
             let alike = names.len() > 1;
