@@ -31,7 +31,7 @@ fn main() {
     let words: Vec<&str> =
         words.iter().map(String::as_str).filter(|word| word.parse::<usize>().is_err()).collect();
     let is_asked = |word: &str| words.is_empty() || words.contains(&word);
-    println!("contacts   regime           column   noise   converged   misfits   error over bound");
+    println!("contacts   regime           column   noise   converged   residuals error over bound");
     for (word, contacts) in [("read", 1e-5), ("exact", 0.0)] {
         for (column, noise) in COLUMNS.into_iter().filter(|(column, _)| is_asked(column) && is_asked(word)) {
             REGIMES.iter().for_each(|regime| row(contacts, regime, column, noise, seeds));

@@ -47,8 +47,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         *sum += 1;
         exact += usize::from(word == "fits" && error < 1e-8);
         println!(
-            "{place}: {word}, error {error:.1e}, {off:.1} deviations, misfit {:.1e} m, chi-square {:.1e} of {}, ratio {:.3}, {:.2} left, {seconds:.1} s",
-            state.misfit, state.chi_square, state.degrees, state.ratio, state.curved
+            "{place}: {word}, error {error:.1e}, {off:.1} deviations, residual {:.1e} m, chi-square {:.1e} of {}, ratio {:.3}, {:.2} left, {seconds:.1} s",
+            state.rms_residual, state.chi_square, state.degrees, state.ratio, state.curved
         );
     }
     println!(

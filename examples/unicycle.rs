@@ -57,10 +57,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
         println!("  by {}", found.words.join(", "));
         println!("  at drawn states {:?}, {} certified", found.full.rank_histogram, found.full.certified);
-        for unseen in &found.full.unseen {
+        for direction in &found.full.unobservable {
             let at: Vec<String> =
-                unseen.at.iter().map(|at| format!("{} = {:.3}", at.name, at.value)).collect();
-            println!("  unobservable at {}: {}", at.join(", "), unseen.example);
+                direction.at.iter().map(|at| format!("{} = {:.3}", at.name, at.value)).collect();
+            println!("  unobservable at {}: {}", at.join(", "), direction.example);
         }
     }
     Ok(())

@@ -119,6 +119,6 @@ fn at_truth(text: &str, noisy: &Experiment) -> Option<[f64; 3]> {
         velocity: moment.velocity,
         receding: [0.0; 2],
         deviations: [0.0; 3],
-        misfit: 0.0,
+        rms_residual: 0.0,
     })
 }
