@@ -33,7 +33,9 @@ impl SlowShape {
     /// Whether the readings are explained: what is left is what errors of their deviation leave, by chi-square within five deviations of its own; exact ones to a part of the mean radius. A shape
     /// that is another leaves more, if only a quarter more: a body that is nearly its own mirror image does.
     pub fn explains(&self, part: f64) -> bool {
-        let most = 1.0 + CERTAIN / (2.0 * self.shape.samples as f64).sqrt();
+        let (degrees, samples) = (self.shape.degrees as f64, self.shape.samples as f64);
+        // each coefficient takes a deviation from the residuals
+        let most = ((degrees + CERTAIN * (2.0 * degrees).sqrt()) / samples).sqrt();
         self.rms_residual <= (most * self.sigma).max(part * self.shape.support.mean())
     }
 }

@@ -6,7 +6,6 @@
 //! Nothing here has seen the body: what a simulation knows comes in through readings alone.
 
 mod closure;
-mod detours;
 mod families;
 mod found;
 mod keys;
@@ -21,6 +20,7 @@ mod readings;
 mod run;
 mod scene;
 mod segments;
+mod sequence;
 mod start;
 mod stopwatch;
 mod study;

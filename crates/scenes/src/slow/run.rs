@@ -1,6 +1,5 @@
 //! A scene of slow motion, simulated or recorded, and what every way makes of its readings.
 
-use super::detours::without_detours;
 use super::found::{EXACT, SlowShape};
 use super::keys::COLUMNS;
 use super::kinks::with_kinks;
@@ -11,6 +10,7 @@ use super::quadrature::{SlowTrack, by_quadrature};
 use super::readings::SlowMeasurements;
 use super::scene::SlowScene;
 use super::segments::{FoundJump, found_jumps, from_segments};
+use super::sequence::with_poses_and_jumps;
 use super::start::{Vote, from_nothing, from_nothing_briefly, votes};
 use super::thesis::{ThesisMethod, ThesisTrack, by_thesis};
 use super::together::Together;
@@ -215,7 +215,7 @@ pub(super) fn without_excess(
     interrupt: &dyn Fn() -> bool,
 ) -> SlowShape {
     let simpler = Together::of(readings).with_fewer_harmonics(found, interrupt);
-    without_detours(readings, with_kinks(readings, simpler, interrupt), interrupt)
+    with_poses_and_jumps(readings, with_kinks(readings, simpler, interrupt), interrupt)
 }
 
 /// The errors of a track, which has to have all samples.

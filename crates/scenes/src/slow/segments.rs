@@ -36,7 +36,7 @@ const TRIED: usize = 5;
 const BACK: usize = 8;
 
 /// Between two samples the palms move in so many steps; a turn by more in one of them may be a jump.
-const STEPS: usize = 24;
+pub(super) const STEPS: usize = 24;
 pub(super) const JUMP: f64 = 0.04;
 
 /// Such a step is halved so often: what remains of the turn is a jump.
@@ -269,19 +269,19 @@ fn is_borne_out(together: &Together<'_>, found: &SlowShape, outline: &Outline, [
 }
 
 /// The palms' way between two samples, as a sample of its own.
-struct Between {
+pub(super) struct Between {
     ends: [[f64; 2]; 2],
     at: SlowMeasurements,
 }
 
 impl Between {
     /// Between a sample and the one before.
-    fn before(readings: &SlowMeasurements, row: usize) -> Between {
+    pub fn before(readings: &SlowMeasurements, row: usize) -> Between {
         Between { ends: [readings.palms[row - 1], readings.palms[row]], at: readings.part(&(row - 1..row)) }
     }
 
     /// The palms at a part of the way.
-    fn at(&mut self, part: f64) -> Together<'_> {
+    pub fn at(&mut self, part: f64) -> Together<'_> {
         let [from, to] = self.ends;
         self.at.palms = vec![[0, 1].map(|palm: usize| from[palm] + part * (to[palm] - from[palm]))];
         Together::of(&self.at)

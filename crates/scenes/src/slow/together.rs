@@ -9,7 +9,7 @@ use super::found::SlowShape;
 use super::outline::{OF_KINK, Outline};
 use super::quadrature::SlowTrack;
 use super::readings::{Sampled, SlowMeasurements};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use palmistry_bodies::shape::{Measured, ShapeEstimate, SupportSeries, convex_deviation, deviation_of};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -51,6 +51,23 @@ pub(super) struct Together<'a> {
     pub kinks: usize,
     /// Samples that do not count for now.
     pub passed_over: Vec<bool>,
+    /// Where the potential is to have a slope.
+    pub held: Vec<Held>,
+}
+
+/// A place at which the potential is to have a slope, for now: so that the body can lie there at a sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Held {
+    pub row: usize,
+    pub phi0: f64,
+    /// The slope, in m, and how exactly it is to be had.
+    pub slope: f64,
+    pub deviation: f64,
+}
+
+/// A radius at an angle against the orientation changes by the orientation with this sign.
+fn sign_of(order: usize) -> f64 {
+    if order % 2 == 1 { -1.0 } else { 1.0 }
 }
 
 /// Radius and its derivatives at both contacts.
@@ -68,6 +85,7 @@ impl<'a> Together<'a> {
             size: scale,
             kinks: 0,
             passed_over: vec![false; readings.rows()],
+            held: Vec::new(),
         }
     }
 
@@ -138,15 +156,24 @@ impl<'a> Together<'a> {
     pub fn bent(&self, row: usize, phi0: f64, series: &Outline, covariance: &DMatrix<f64>) -> [Measured; 2] {
         let (a, b) = (self.sampled[row].second[0], self.sampled[row].first[0]);
         let [first, second] = self.touched(row, phi0, series);
-        let [one, two] = self.angles[row].map(|angle| series.basis(angle - phi0));
-        [(1, -1.0), (2, 1.0)].map(|(order, sign)| {
-            let form: Vec<f64> =
-                one.iter().zip(&two).map(|(one, two)| sign * (a * one[order] + b * two[order])).collect();
-            Measured {
-                value: sign * (a * first[order] + b * second[order]),
-                deviation: deviation_of(covariance, &form),
-            }
+        [1, 2].map(|order: usize| Measured {
+            value: sign_of(order) * (a * first[order] + b * second[order]),
+            deviation: deviation_of(covariance, &self.by_potential(order, row, phi0, series)),
         })
+    }
+
+    /// The slope of the potential by the orientation, in m.
+    pub fn slope(&self, row: usize, phi0: f64, series: &Outline) -> f64 {
+        let (a, b) = (self.sampled[row].second[0], self.sampled[row].first[0]);
+        let [first, second] = self.touched(row, phi0, series);
+        sign_of(1) * (a * first[1] + b * second[1])
+    }
+
+    /// The derivatives by the coefficients of the potential's first or second derivative by the orientation, which is fixed.
+    fn by_potential(&self, order: usize, row: usize, phi0: f64, series: &Outline) -> Vec<f64> {
+        let (a, b) = (self.sampled[row].second[0], self.sampled[row].first[0]);
+        let [one, two] = self.angles[row].map(|angle| series.basis(angle - phi0));
+        one.iter().zip(&two).map(|(one, two)| sign_of(order) * (a * one[order] + b * two[order])).collect()
     }
 
     pub fn contacts(&self, row: usize, [first, second]: &Touched) -> [f64; 2] {
@@ -155,6 +182,67 @@ impl<'a> Together<'a> {
             (first[0] * cosine + second[0]) / sine + first[1],
             (second[0] * cosine + first[0]) / sine - second[1],
         ]
+    }
+
+    /// By how many deviations the contacts of a pose are off, squared and summed: of readings with errors of `sigma`, in m, and of what the covariance of the outline's coefficients leaves open.
+    pub fn surprise(
+        &self,
+        row: usize,
+        phi0: f64,
+        series: &Outline,
+        covariance: &DMatrix<f64>,
+        sigma: f64,
+    ) -> f64 {
+        let contacts = self.contacts(row, &self.touched(row, phi0, series));
+        let forms = self.by_coefficients(row, phi0, series);
+        let off = Vector2::from_fn(|i, _| self.readings.contacts[row][i] - contacts[i]);
+        let mut spread = Matrix2::identity() * (sigma * sigma);
+        // a shape that nothing is known of by its covariance is taken at its word
+        if covariance.iter().all(|entry| entry.is_finite()) {
+            let forms = DMatrix::from_fn(forms[0].len(), 2, |k, i| forms[i][k]);
+            let open = forms.transpose() * covariance * &forms;
+            spread += Matrix2::from_fn(|i, j| open[(i, j)]);
+        }
+        spread.cholesky().map_or(f64::INFINITY, |spread| off.dot(&spread.solve(&off)))
+    }
+
+    /// The same where the body lay at an orientation that is no stable pose of this outline: the contacts there, and by how many deviations the potential is steep.
+    pub fn surprise_if_it_lay(
+        &self,
+        row: usize,
+        phi0: f64,
+        series: &Outline,
+        covariance: &DMatrix<f64>,
+        sigma: f64,
+    ) -> f64 {
+        let contacts = self.contacts(row, &self.touched(row, phi0, series));
+        let off =
+            (0..2).map(|i| ((self.readings.contacts[row][i] - contacts[i]) / sigma).powi(2)).sum::<f64>();
+        let [slope, _] = self.bent(row, phi0, series, covariance);
+        let steep = (slope.value / slope.deviation).powi(2);
+        if steep.is_nan() || slope.deviation.is_infinite() { f64::INFINITY } else { off + steep }
+    }
+
+    /// The derivatives of both contacts by the coefficients, the pose's own turn among them, in m.
+    fn by_coefficients(&self, row: usize, phi0: f64, series: &Outline) -> [Vec<f64>; 2] {
+        let sampled = &self.sampled[row];
+        let (a, b) = (sampled.second[0], sampled.first[0]);
+        let [sine, cosine] = sampled.opening;
+        let [first, second] = self.touched(row, phi0, series);
+        let [ones, twos] = self.angles[row].map(|angle| series.basis(angle - phi0));
+        let stiffness = a * first[2] + b * second[2];
+        let by_turn = [
+            -(first[1] * cosine + second[1]) / sine - first[2],
+            -(second[1] * cosine + first[1]) / sine + second[2],
+        ];
+        let mut forms = [Vec::with_capacity(ones.len()), Vec::with_capacity(ones.len())];
+        for (one, two) in ones.iter().zip(&twos) {
+            let turn = (a * one[1] + b * two[1]) / stiffness;
+            let own =
+                [(one[0] * cosine + two[0]) / sine + one[1], (two[0] * cosine + one[0]) / sine - two[1]];
+            forms.iter_mut().zip(own).zip(by_turn).for_each(|((form, own), by)| form.push(own + by * turn));
+        }
+        forms
     }
 
     /// The root of the mean square of what is left of the contacts at a shape, each pose the next one to what is given, in m.
@@ -184,7 +272,7 @@ impl<'a> Together<'a> {
     fn settled(&self, coefficients: Vec<f64>, near: &[f64], farthest: f64) -> Option<Point> {
         let series = self.outline(&coefficients);
         let rows = self.sampled.len();
-        let mut left = DVector::zeros(2 * rows + coefficients.len());
+        let mut left = DVector::zeros(2 * rows + coefficients.len() + self.held.len());
         let mut phi0 = Vec::with_capacity(rows);
         let mut least = f64::INFINITY;
         for row in 0..rows {
@@ -203,6 +291,10 @@ impl<'a> Together<'a> {
         for (place, coefficient) in coefficients.iter().enumerate().take(1 + 2 * series.order()).skip(1) {
             left[2 * rows + place] = -coefficient / convex_deviation(self.size, place.div_ceil(2));
         }
+        for (place, held) in self.held.iter().enumerate() {
+            let slope = self.slope(held.row, held.phi0, &series);
+            left[2 * rows + coefficients.len() + place] = (held.slope - slope) / held.deviation;
+        }
         let cost = left.norm_squared();
         cost.is_finite().then_some(Point { coefficients, phi0, left, cost, stiffness: least })
     }
@@ -212,30 +304,19 @@ impl<'a> Together<'a> {
         let (rows, p) = (self.sampled.len(), at.coefficients.len());
         let series = self.outline(&at.coefficients);
         // column by column in memory: a row of the transpose is written at once
-        let mut transposed = DMatrix::zeros(p, 2 * rows + p);
+        let mut transposed = DMatrix::zeros(p, 2 * rows + p + self.held.len());
         for row in (0..rows).filter(|row| !self.passed_over[*row]) {
-            let sampled = &self.sampled[row];
-            let (a, b) = (sampled.second[0], sampled.first[0]);
-            let [sine, cosine] = sampled.opening;
-            let [first, second] = self.touched(row, at.phi0[row], &series);
-            let bases = self.angles[row].map(|angle| series.basis(angle - at.phi0[row]));
-            let stiffness = a * first[2] + b * second[2];
-            let by_turn = [
-                -(first[1] * cosine + second[1]) / sine - first[2],
-                -(second[1] * cosine + first[1]) / sine + second[2],
-            ];
-            for k in 0..p {
-                let (one, two) = (&bases[0][k], &bases[1][k]);
-                let turn = (a * one[1] + b * two[1]) / stiffness;
-                let own =
-                    [(one[0] * cosine + two[0]) / sine + one[1], (two[0] * cosine + one[0]) / sine - two[1]];
-                for i in 0..2 {
-                    transposed[(k, 2 * row + i)] = (own[i] + by_turn[i] * turn) / self.sigma;
-                }
+            let forms = self.by_coefficients(row, at.phi0[row], &series);
+            for (i, form) in forms.iter().enumerate() {
+                form.iter().enumerate().for_each(|(k, by)| transposed[(k, 2 * row + i)] = by / self.sigma);
             }
         }
         for k in 1..=2 * series.order() {
             transposed[(k, 2 * rows + k)] = 1.0 / convex_deviation(self.size, k.div_ceil(2));
+        }
+        for (place, held) in self.held.iter().enumerate() {
+            let form = self.by_potential(1, held.row, held.phi0, &series);
+            (0..p).for_each(|k| transposed[(k, 2 * rows + p + place)] = form[k] / held.deviation);
         }
         transposed.transpose()
     }
