@@ -20,9 +20,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Lines approach every singular set down to a distance of 1e-15. At each point, an exact rational state, the rank is decided in single
 /// precision, in doubles by numpy's rule, in doubles after equilibration, with the errors that intervals
 /// know, by intervals alone, in double-doubles, and by the number types that 'palmistry rank' takes in turn; beside them stands the
-/// certified rank. For each the table has the
+/// certified rank of the rows: the file's own, or the Lie derivatives that suffice at generic states. For each the table has the
 /// distance at which it first reports another rank, and at which an entry first loses more than half of its digits, each as
-/// a range over the states; and at how many states on the set itself it has the exact rank, since whoever always says
+/// a range over the states; and at how many states on the set itself it has the exact rank of the rows, since whoever always says
 /// "full" (a column of its own) is never wrong beside a set.
 ///
 /// Then every quantity is scaled from 1e-150 to 1e150, and the states are looked at in other units, which should change

@@ -399,3 +399,91 @@ fn a_lie_derivative_goes_on_to_the_derivatives_of_known_signals() {
     let refused = System::parse("test.proof", &deep, Path::new("")).unwrap_err().to_string();
     assert!(refused.contains("or comes to it by Lie derivatives; the highest is 30"), "{refused}");
 }
+
+/// A tied signal says what a quotient says that is measured: drawn systems in both forms have the same rank and the same verdict of each unknown, whatever derivatives of
+/// the signal the file mentions besides, at almost all states and at those at which a state is nought.
+#[test]
+fn a_tie_is_a_quotient_that_is_measured() {
+    use palmistry::{RankQuestion, answer_rank};
+    use rand::{RngExt, SeedableRng};
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(11);
+    let names = ["x0", "x1", "x2", "k0", "k1"];
+    let (mut compared, mut on_sets, mut unsaid) = (0, 0, 0);
+    for _ in 0..120 {
+        let mut polynomial = |terms: usize, states_alone: bool| -> String {
+            let mut term = || {
+                let mut text = rng.random_range(1..=3).to_string();
+                for _ in 0..rng.random_range(0..=2) {
+                    let last = if states_alone { 3 } else { names.len() };
+                    text += &format!("*{}", names[rng.random_range(0..last)]);
+                }
+                text
+            };
+            (0..terms).map(|_| term()).collect::<Vec<_>>().join(" + ")
+        };
+        let rates: String =
+            (0..3).map(|place| format!(" x{place}' = {}", polynomial(1 + place % 2, false))).collect();
+        let (above, below) = (polynomial(2, true), polynomial(1, true));
+        let more =
+            ["", " let q = u'*x0", " let q = u''", " let q = L(f, L(f, u*x1))"][rng.random_range(0..4)];
+        let head = "system \"s\" state x0, x1, x2 param k0, k1 unknown";
+        let tied = format!("{head} known u(t) drift f{rates} output 0 = u*({below}) - ({above}){more}");
+        let measured = format!("{head} drift f{rates} output ({above})/({below})");
+        let found = |text: &str, conditions: &[&str]| {
+            let mut system = system(text);
+            let conditions = conditions.iter().map(|&one| one.to_owned()).collect();
+            let question = RankQuestion { samples: 4, conditions, ..RankQuestion::default() };
+            let answer = answer_rank(&mut system, &question).map_err(|why| why.to_string())?;
+            let [branch] = answer.branches.as_slice() else { return Err("branches".to_owned()) };
+            let verdicts: Vec<String> =
+                branch.generic.unknowns.iter().map(|(_, verdict)| format!("{verdict:?}")).collect();
+            let sampled: Vec<usize> = branch.full.rank_histogram.keys().copied().collect();
+            Ok::<_, String>((branch.generic.rank(), verdicts, sampled))
+        };
+        for conditions in [&[][..], &["x0 = 0"][..]] {
+            let Ok((rank, verdicts, ranks)) = found(&measured, conditions) else { continue };
+            let Ok((own, says, sampled)) = found(&tied, conditions) else {
+                unsaid += 1;
+                continue;
+            };
+            let Some(rank) = rank else { continue };
+            let text = format!("{tied}\n{measured}\n{conditions:?}");
+            if own.is_some() {
+                assert_eq!((own, &says), (Some(rank), &verdicts), "{text}");
+                compared += usize::from(conditions.is_empty());
+                on_sets += usize::from(!conditions.is_empty());
+            }
+            for ranks in [ranks, sampled] {
+                assert!(ranks.iter().all(|at_a_state| *at_a_state <= rank), "{text}: {ranks:?} of {rank}");
+            }
+        }
+    }
+    println!("{compared} and {on_sets} on sets compared, of {unsaid} nothing is said");
+    assert!(compared >= 80 && on_sets >= 20, "{compared} {on_sets} {unsaid}");
+}
+
+/// Where the slope of the tie vanishes the last derivatives of the signal look free and are not: nothing is said there that is false.
+#[test]
+fn where_a_tie_gives_lower_derivatives_nothing_false_is_said() {
+    // scaling all of x, y, a, b keeps u, so that at x = y = 0 the rank is 2 of 4, and b is not observable where x = 0
+    let file = system(
+        "system \"s\" state x, y param a, b unknown known u(t) drift f x' = b y' = a output 0 = u*x - y
+         claim 1: rank = 3
+         claim 2 expect undecided: rank = 4 where x = 0
+         claim 3 expect undecided: rank = 2 where x = 0, y = 0
+         claim 4 expect undecided: observable(b) where x = 0
+         claim 5: unobservable(b)",
+    );
+    for outcome in prove(&file) {
+        assert!(outcome.ok, "{} {:?}", outcome.id, outcome.verdict);
+    }
+    // a scale is in no way given by a direction
+    let turning =
+        "system \"s\" state x, y param w unknown known u(t) drift f x' = -w*y y' = w*x output 0 = u*x - y
+         claim 1: solutions(x) = infinity
+         claim 2 expect refuted: solutions(y) < infinity
+         claim 3 expect undecided: solutions(w) = 1";
+    for outcome in prove(&system(turning)) {
+        assert!(outcome.ok, "{} {:?}", outcome.id, outcome.verdict);
+    }
+}

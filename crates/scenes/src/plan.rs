@@ -278,6 +278,10 @@ impl Experiment {
     /// The generic rank of the least model, and which of what is estimated it does not tell.
     fn generic(&self, least: &LeastModel) -> Option<PlanRank> {
         let system = System::parse("the least model", &least.text, Path::new("")).ok()?;
+        if !system.zero_outputs().is_empty() {
+            // what outputs tie is not driven at will: the rank is that of a branch
+            return None;
+        }
         let answer = generic_answer(&system, &Assignment::new(), Ceiling::Rests);
         let names = self.names();
         let unobserved = |answer: &GenericAnswer, system: &System| -> Vec<String> {

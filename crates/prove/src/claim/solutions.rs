@@ -117,6 +117,7 @@ pub(super) fn decide_solutions(
             "initial conditions are given in several ways: of these no solutions are counted".to_owned()
         );
     };
+    let branch = branch.clone().tied_by_outputs(system).map_err(|why| why.to_string())?;
     let question = SolutionsQuestion {
         conditions: branch.values.clone(),
         expressions: vec![(name, asking.expression)],

@@ -41,6 +41,11 @@ pub(super) fn by_signs(
         };
         let several = cells.len() > 1;
         for cell in cells {
+            // what the conditions give may leave nothing of it
+            let given = system.substitute_guards(&cell.guards, &branch.values);
+            if given.iter().any(|guard| guard.is_obvious(&system.graph) == Some(false)) {
+                continue;
+            }
             let mut part = branch.clone();
             for guard in &cell.guards {
                 add_guard(&system.graph, &mut part.guards, *guard);

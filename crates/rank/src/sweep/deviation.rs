@@ -50,6 +50,8 @@ pub struct StandardDeviations {
     pub list: Vec<StandardDeviation>,
     /// The worst of them all; nothing of a system without states.
     pub least: Option<LeastObservable>,
+    /// Whether Lie derivatives of higher order may make a state observable that is not by these.
+    pub may_be_finite: bool,
 }
 
 /// Whether a sweep says of a state of the system that it is seen at every state that was drawn.
@@ -111,5 +113,5 @@ pub(crate) fn standard_deviations(
     });
     let words = codistribution.needed.iter().map(|word| codistribution.words[*word].text(system));
     let words = words.zip(scales.noise).collect();
-    Ok(Some(StandardDeviations { states: drawn.states.len(), words, list, least }))
+    Ok(Some(StandardDeviations { states: drawn.states.len(), words, list, least, may_be_finite: false }))
 }

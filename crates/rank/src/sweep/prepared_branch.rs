@@ -202,8 +202,8 @@ impl PreparedBranch {
         let RankQuestion { digits, recorded, interrupt, .. } = *question;
         let told = Told { samples, digits, recorded, interrupt };
         let by_series = matches!(full, ByStates::Series(_));
-        let full = full.report(system, counts.full, told)?;
-        let deviations = match full.interrupted || by_series || !wanted {
+        let mut full = full.report(system, counts.full, told)?;
+        let mut deviations = match full.interrupted || by_series || !wanted {
             true => None,
             false => standard_deviations(system, &locus, &codistribution, &full, (question.seed, samples))?,
         };
@@ -229,6 +229,13 @@ impl PreparedBranch {
         let settled = motions.as_ref().is_some_and(|found| {
             found.settles_the_rank && generic_rank + found.directions() == system.unknown_count()
         });
+        let is_final = codistribution.is_final() || known || settled;
+        // where the rank of all Lie derivatives is not known, or is not that of almost all states, these say what they show
+        let is_short = |rank: usize| rank < system.unknown_count() && (!is_final || rank < generic_rank);
+        full.recorded.retain(|state| !is_short(state.rank));
+        if let Some(found) = &mut deviations {
+            found.may_be_finite = full.rank_histogram.keys().any(|rank| is_short(*rank));
+        }
         let word = |(word, entries): (&crate::observability::Word, &Vec<NodeId>)| TakenRow {
             word: word.text(system),
             entries: entries.clone(),
@@ -249,7 +256,7 @@ impl PreparedBranch {
             order: codistribution.order,
             stop: codistribution.stop,
             generic_rank,
-            is_final: codistribution.is_final() || known || settled,
+            is_final,
             motions,
             cut_off: question.order.is_none()
                 && !known

@@ -72,6 +72,19 @@ pub struct GenericOnBranch {
     pub unknowns: Vec<(String, UnknownKind)>,
 }
 
+impl BranchAnswer {
+    /// Whether the rank at a sampled state is that of the Lie derivatives which were taken, and higher ones may raise it: the rank of all is not
+    /// known on the branch, or is higher at almost all of its states.
+    pub fn may_be_raised(&self, rank: usize) -> bool {
+        rank < self.unknowns.len() && (!self.is_final || rank < self.generic_rank)
+    }
+
+    /// Whether it may at one of the sampled states.
+    pub fn is_short_somewhere(&self) -> bool {
+        self.full.rank_histogram.keys().any(|rank| self.may_be_raised(*rank))
+    }
+}
+
 impl GenericOnBranch {
     pub(super) fn new(system: &System, branch: &Branch, frame: &Frame) -> GenericOnBranch {
         let mut solved: Vec<_> = branch.values.iter().collect();

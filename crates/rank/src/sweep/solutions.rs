@@ -112,16 +112,23 @@ pub fn answer_solutions_telling(
         let several = "initial conditions that are given in several ways: of these no values are counted";
         return Err(RankError::Condition(several.to_owned()));
     };
+    let conditions = given(system, branch);
+    // local answers are those of the states that the outputs which are zero leave
+    let branch = &branch.clone().tied_by_outputs(system)?;
     let asked =
         RankQuestion { samples: 0, wanted: Certainty::Computed, interrupt, ..RankQuestion::default() };
     let held = held_parameters(system, &asked, &branch.values, std::iter::empty());
-    let conditions = held_conditions(system, &asked, branch);
-    let question = SolutionsQuestion { conditions, expressions: Vec::new(), work, interrupt };
+    let question = SolutionsQuestion {
+        conditions: held_conditions(system, &asked, branch),
+        expressions: Vec::new(),
+        work,
+        interrupt,
+    };
     let kinds = named_unknowns(system);
     let blank = GlobalAnswer {
         file: system.name.clone(),
         title: system.title.clone(),
-        conditions: given(system, branch),
+        conditions,
         held,
         known: system.known_names(),
         solutions: SolutionsAnswer::default(),

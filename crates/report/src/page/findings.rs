@@ -259,16 +259,22 @@ pub(crate) fn ranks_in_words(answer: &RankAnswer, own: bool) -> String {
     for branch in &answer.branches {
         let report = if own { branch.rows.as_ref() } else { Some(&branch.full) };
         for (rank, count) in report.into_iter().flat_map(|r| &r.rank_histogram) {
-            *total.entry(*rank).or_insert(0u64) += count;
+            // Lie derivatives that were not taken may raise it
+            let is_least = !own && branch.may_be_raised(*rank);
+            *total.entry((*rank, is_least)).or_insert(0u64) += count;
         }
     }
+    let text = |(rank, is_least): &(usize, bool)| match is_least {
+        true => format!("at least {rank}"),
+        false => rank.to_string(),
+    };
     match total.len() {
         0 => "-".to_owned(),
-        1 => total.keys().map(usize::to_string).collect(),
+        1 => total.keys().map(text).collect(),
         _ => total
             .iter()
             .rev()
-            .map(|(rank, count)| format!("{rank} at {count}"))
+            .map(|(rank, count)| format!("{} at {count}", text(rank)))
             .collect::<Vec<_>>()
             .join(", "),
     }

@@ -13,7 +13,7 @@ use crate::structure::{DiagramGround, structure_picture};
 use maud::{Markup, PreEscaped, html};
 use palmistry_lang::Looks;
 use palmistry_prove::claim::Outcome;
-use palmistry_rank::sweep::RankAnswer;
+use palmistry_rank::sweep::{BranchAnswer, RankAnswer};
 use palmistry_workbench::paper::{
     DerivativesFound, FileFindings, LineFound, MapFound, ReductionFound, SetRank,
 };
@@ -232,7 +232,11 @@ fn ranks(ranks: &[SetRank], looks: &Looks) -> Markup {
                         @match rank.answer() {
                             Ok(answer) => {
                                 td.k { b { (ranks_in_words(answer, false)) } " of " (answer.dimension) }
-                                td { (in_symbols(&unobservable(answer, false), looks)) }
+                                td {
+                                    @if answer.branches.iter().any(BranchAnswer::is_short_somewhere) {
+                                        "not decided: Lie derivatives of higher order may raise the rank"
+                                    } @else { (in_symbols(&unobservable(answer, false), looks)) }
+                                }
                                 @if has_own {
                                     td { b { (ranks_in_words(answer, true)) } }
                                     td { (in_symbols(&unobservable(answer, true), looks)) }

@@ -337,19 +337,23 @@ fn branch_text(branch: &BranchAnswer, details: bool, out: &mut String) {
     if !branch.is_final {
         prose("higher Lie derivatives may still raise the rank: nothing here says that they cannot", out);
     }
-    sampled_text("at sampled states", &branch.full, out);
+    let short_up_to = branch.is_short_somewhere().then_some(branch.order);
+    let title = match short_up_to {
+        Some(order) => format!("at sampled states, by Lie derivatives up to order {order}"),
+        None => "at sampled states".to_owned(),
+    };
+    sampled_text(&title, &branch.full, out);
     // fields that were found say the same for all states
     let is_known = branch.motions.as_ref().is_some_and(|found| found.fields_missing == 0);
     let lower = branch.full.rank_histogram.range(..branch.generic_rank).map(|(_, count)| count).sum::<u64>();
     if details || !is_known {
-        directions_text(&branch.full, (lower > 0).then_some(branch.order), out);
+        directions_text(&branch.full, short_up_to, out);
     }
     digits_text(&branch.full, out);
     if lower > 0 {
         item(
             &format!(
-                "rank-deficient at {lower} of them, by Lie derivatives up to order {}: --where-it-drops gives the singular set, by those of all orders",
-                branch.order
+                "rank-deficient at {lower} of them: --where-it-drops gives the singular set, by Lie derivatives of all orders"
             ),
             out,
         );

@@ -73,7 +73,7 @@ pub(super) fn deviations_text(found: &StandardDeviations, out: &mut String) {
     let _ = writeln!(out, "  {:<width$}  {:>10}  {:>12}  {:>12}", "state", "prior", "median", "worst");
     for row in &found.list {
         // of an observable state whose deviation doubles cannot compute it is not said that it is unobservable
-        let infinite = if row.is_seen { "unknown" } else { "unobservable" };
+        let infinite = if row.is_seen { "unknown" } else { unobservable(found) };
         let deviation = |value: f64| if value.is_finite() { number_text(value) } else { infinite.to_owned() };
         let remark = match (row.infinite, row.median >= NEARLY_INVISIBLE) {
             (0, true) => "  nearly unobservable".to_owned(),
@@ -102,8 +102,13 @@ pub(crate) fn deviation_text(found: &StandardDeviations, least: &LeastObservable
     match (least.deviation.is_finite(), is_seen) {
         (true, _) => number_text(least.deviation),
         (false, true) => "unknown".to_owned(),
-        (false, false) => "unobservable".to_owned(),
+        (false, false) => unobservable(found).to_owned(),
     }
+}
+
+/// The word for a state that the Lie derivatives which were taken do not show.
+fn unobservable(found: &StandardDeviations) -> &'static str {
+    if found.may_be_finite { "infinite" } else { "unobservable" }
 }
 
 fn number_text(value: f64) -> String {

@@ -292,7 +292,9 @@ pub fn stress_text(studies: &[StressStudy]) -> String {
         "Lines: the distance at which a way first reports a wrong rank (w), has lost more than half of an entry's\n\
          digits (d), says that it cannot decide (?), refuses and names why (!), as a range over the states from which\n\
          lines go (at how many of them, where not at all); '-' none of it down to 9e-16.\n\
-         On the set: at how many of the states on the set itself the verdict is the exact rank there.\n\
+         Ranks are those of the rows: the file's own, or the Lie derivatives that suffice at generic states. On a set\n\
+         that the motion leaves, Lie derivatives of higher order may raise the rank: 'rank --where-it-drops' says so.\n\
+         On the set: at how many of the states on the set itself the verdict is the exact rank of the rows there.\n\
          'always full' looks at nothing. numpy's rule: all rows, of length one and not equilibrated; what exceeds\n\
          max(rows, columns) * 2^-52 of the largest singular value counts.\n\
          Scaling: the exponents of ten within which the rank is right.\n\

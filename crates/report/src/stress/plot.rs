@@ -134,7 +134,9 @@ pub fn lines_picture(study: &StressStudy) -> String {
         .iter()
         .map(|line| {
             let end = match &line.end {
-                LineLimit::Ranks { ranks, .. } => format!("on the set: rank {}", ranks_text(ranks.iter())),
+                LineLimit::Ranks { ranks, .. } => {
+                    format!("on the set: rows of rank {}", ranks_text(ranks.iter()))
+                }
                 LineLimit::Pole(why) => why.clone(),
                 LineLimit::Infinity => "the set is at infinity".to_owned(),
             };

@@ -334,9 +334,15 @@ pub fn found_jumps(readings: &SlowMeasurements, found: &SlowShape) -> Vec<FoundJ
         }
         if !predicted {
             // it was held against the measurements before, and stays only where they need it; two poses so near each other that nothing is sure to lie between are one
-            let from = if followed { pose } else { before };
-            let other = from + shorter(phi0[row] - from);
-            certain = is_borne_out(&between.at(1.0), found, &outline, [from, other]);
+            let mut lies_between = |from: f64| {
+                is_borne_out(&between.at(1.0), found, &outline, [from, from + shorter(phi0[row] - from)])
+            };
+            let from_before = lies_between(before);
+            if !falls.is_empty() && !from_before {
+                // this shape's pose has just ended, and the body is in it still
+                continue;
+            }
+            certain = from_before && (!followed || lies_between(pose));
         }
         all.push(FoundJump { row, within, turn, predicted, certain });
     }

@@ -20,7 +20,6 @@ use super::together::{Held, Together};
 use palmistry_bodies::mechanics::resting::stable_poses;
 use palmistry_bodies::shape::Measured;
 use std::f64::consts::{PI, TAU};
-use std::ops::Range;
 
 /// What a turn costs to which no descent leads.
 const UNLED: f64 = CERTAIN * CERTAIN;
@@ -75,11 +74,11 @@ pub(super) fn with_poses_and_jumps(
     let mut fitted = 0;
     for _ in 0..ROUNDS {
         let mut better: Option<(f64, SlowShape, Vec<FoundJump>)> = None;
-        for left_out in ways(&jumps, readings.rows()) {
+        for way in ways(readings, &together, &found, &jumps) {
             if interrupt() || fitted == MOST_FITTED {
                 break;
             }
-            let Some(other) = another(&together, &found, left_out, sigma, interrupt) else { continue };
+            let Some(other) = another(&together, &found, way, sigma, interrupt) else { continue };
             fitted += 1;
             if !other.explains(EXACT) {
                 continue;
@@ -100,17 +99,53 @@ pub(super) fn with_poses_and_jumps(
     found
 }
 
-/// The samples that are left out of a fit before the sequence is asked anew: none at first; then those about each turn to which nothing leads, and stretches between it and the jumps beside.
-fn ways(jumps: &[FoundJump], rows: usize) -> Vec<Range<usize>> {
-    let mut ways = vec![0..0];
+/// What a shape is fitted to before the sequence is asked anew.
+#[derive(Default)]
+struct Way {
+    /// Samples that do not count.
+    left_out: Vec<usize>,
+    /// Slopes of the potential.
+    held: Vec<Held>,
+}
+
+/// The ways that are tried: the shape as it is first; then without the samples about each turn to which nothing leads, and those between it and the jumps beside; and
+/// where the turn is small, with a potential that does not rise between its poses.
+fn ways(
+    readings: &SlowMeasurements,
+    together: &Together<'_>,
+    found: &SlowShape,
+    jumps: &[FoundJump],
+) -> Vec<Way> {
+    let outline = Outline::of(&found.shape.support.coefficients(), 0);
+    let rows = readings.rows();
+    let mut ways = vec![Way::default()];
     for (place, jump) in jumps.iter().enumerate().filter(|(_, jump)| !jump.predicted) {
         let within =
             |from: usize, to: usize, about: usize| from.saturating_sub(about)..(to + about).min(rows);
-        ways.extend(ABOUT.map(|about| within(jump.row, jump.row, about)));
+        let mut stretches = ABOUT.map(|about| within(jump.row, jump.row, about)).to_vec();
         let before = place.checked_sub(1).map(|before| jumps[before].row..jump.row);
         let after = jumps.get(place + 1).map(|after| jump.row..after.row);
         for stretch in before.into_iter().chain(after).filter(|stretch| stretch.len() <= STRETCH) {
-            ways.push(within(stretch.start, stretch.end, ABOUT[0]));
+            stretches.push(within(stretch.start, stretch.end, ABOUT[0]));
+        }
+        ways.extend(
+            stretches.into_iter().map(|stretch| Way { left_out: stretch.collect(), held: Vec::new() }),
+        );
+        let last = found.track.phi0[jump.row - 1];
+        let from = led(&mut Between::before(readings, jump.row), last, &outline).to.unwrap_or(last);
+        let turn = turned(found.track.phi0[jump.row] - from);
+        if turn.abs() <= FARTHEST {
+            let bent = |part: f64| {
+                let phi0 = from + part * turn;
+                (phi0, together.bent(jump.row, phi0, &outline, &found.shape.covariance)[0])
+            };
+            let rise = |part: &f64| bent(*part).1.value * turn.signum();
+            let steepest = (1..PLACES).map(|at| at as f64 / PLACES as f64);
+            let steepest = steepest.max_by(|a, b| rise(a).total_cmp(&rise(b))).unwrap_or(0.5);
+            let (phi0, Measured { deviation, .. }) = bent(steepest);
+            let (slope, deviation) = (-turn.signum() * deviation, HELD * deviation);
+            let held = vec![Held { row: jump.row, phi0, slope, deviation }];
+            ways.push(Way { left_out: vec![jump.row], held });
         }
     }
     ways
@@ -120,12 +155,12 @@ fn ways(jumps: &[FoundJump], rows: usize) -> Vec<Range<usize>> {
 fn another(
     together: &Together<'_>,
     found: &SlowShape,
-    left_out: Range<usize>,
+    way: Way,
     sigma: f64,
     interrupt: &dyn Fn() -> bool,
 ) -> Option<SlowShape> {
-    let mut is_new = !left_out.is_empty();
-    let mut shape = fitted_without(together, found.clone(), left_out.collect(), Vec::new(), interrupt)?;
+    let mut is_new = !way.left_out.is_empty();
+    let mut shape = fitted_without(together, found.clone(), way, interrupt)?;
     for _ in 0..=ENDED_BEFORE {
         let Sequence { phi0, ended } = cheapest(together.readings, together, &shape, sigma)?;
         is_new |= !is_the_same(&phi0, &found.track.phi0);
@@ -152,7 +187,7 @@ fn another(
         });
         let held = held.collect();
         shape.track.phi0 = phi0;
-        shape = fitted_without(together, shape, ended, held, interrupt)?;
+        shape = fitted_without(together, shape, Way { left_out: ended, held }, interrupt)?;
     }
     None
 }
@@ -166,16 +201,15 @@ fn places(phi0: f64) -> impl Iterator<Item = f64> {
 fn fitted_without(
     together: &Together<'_>,
     found: SlowShape,
-    left_out: Vec<usize>,
-    held: Vec<Held>,
+    way: Way,
     interrupt: &dyn Fn() -> bool,
 ) -> Option<SlowShape> {
-    if left_out.is_empty() || !found.kinks.is_empty() {
+    if way.left_out.is_empty() || !found.kinks.is_empty() {
         return Some(found);
     }
     let mut others = together.clone();
-    others.held = held;
-    left_out.iter().for_each(|row| others.passed_over[*row] = true);
+    others.held = way.held;
+    way.left_out.iter().for_each(|row| others.passed_over[*row] = true);
     let begin = others.point(found.shape.support.coefficients(), &found.track.phi0)?;
     Some(others.shape(&others.down(begin, interrupt)))
 }

@@ -4,19 +4,34 @@
 //! Each `y^(j) = 0` is solved for a coordinate in which it is linear. For `j > 0` it is so in the highest derivative of a
 //! signal, with the slope that `y` itself has; where that slope does not vanish (at almost all points of a set that has one part)
 //! the derivatives of the signal are given by the rest, one after the other. No branch is followed on which it does vanish: a rank is
-//! that at almost all points.
+//! that at almost all points. Derivatives are taken as long as the file's symbols for those of the signals reach.
+//!
+//! The last of them has to be solved for one of the last derivatives of signals: then there are signals with these derivatives which
+//! keep `y` zero for a while, by the theorem on implicit functions. Where its slope vanishes on all of the branch, as that of `u x - y` where `x = 0`,
+//! the equation ties lower derivatives, the last ones look free and are not, and points with any value of them are none of the system.
+//! There nothing is said.
 
 use super::single::{also_met_otherwise, linear_solution};
 use super::{Branch, Unsolved, is_a_constant_but_zero, quote, vanishes};
 use palmistry_lang::{Assignment, System};
 use palmistry_math::expression::{Guard, Need, NodeId, Symbol, add_guard};
 
+/// A derivative of an output that is zero, the last one so far.
+struct Tied {
+    node: NodeId,
+    /// What it was solved for.
+    solved: Option<Symbol>,
+    /// Whether there are no symbols for the next one.
+    is_last: bool,
+}
+
 impl Branch {
-    /// The part of the branch on which the outputs that are zero vanish, with one derivative more than words are long: so many
-    /// derivatives of known signals there are, and all but the last move along the set.
+    /// The part of the branch on which the outputs that are zero vanish, with all derivatives that the symbols for known signals allow, and at least one more
+    /// than words are long.
     ///
     /// # Errors
-    /// Where one of them vanishes nowhere, is linear in no coordinate, or vanishes in more than one way.
+    /// Where one of them vanishes nowhere, is linear in no coordinate, or vanishes in more than one way, and where the last derivatives of signals are not
+    /// given by it.
     pub fn tied_by_outputs(mut self, system: &mut System) -> Result<Branch, Unsolved> {
         let outputs = system.zero_outputs();
         if outputs.is_empty() {
@@ -27,16 +42,53 @@ impl Branch {
             self.steps.push(quote(system, zero, *node));
         }
         let drift = system.drift();
-        let mut solved: Vec<Option<Symbol>> = vec![None; outputs.len()];
-        let mut current = outputs;
-        for order in 0..=system.longest_word().unwrap_or(0) + 1 {
-            for (node, solved) in current.iter().zip(&mut solved) {
-                *solved = self.meet(system, *node, order, *solved)?;
+        let mut current: Vec<Tied> =
+            outputs.iter().map(|node| Tied { node: *node, solved: None, is_last: false }).collect();
+        let without_signals = system.longest_word().unwrap_or(0) + 1;
+        let mut order = 0;
+        loop {
+            for tied in current.iter_mut().filter(|tied| !tied.is_last) {
+                tied.solved = self.meet(system, tied.node, order, tied.solved)?;
+                let mentioned = system.graph.symbols_of([tied.node]);
+                let has_signals =
+                    mentioned.iter().any(|symbol| system.derivative_of_signal(*symbol).is_some());
+                tied.is_last = mentioned.iter().any(|symbol| system.is_cut_off(*symbol))
+                    || !has_signals && order >= without_signals;
             }
-            let Some(drift) = drift else { break };
-            current = current.iter().map(|node| system.lie_derivative(drift, *node)).collect();
+            let Some(drift) = drift.filter(|_| current.iter().any(|tied| !tied.is_last)) else { break };
+            for tied in current.iter_mut().filter(|tied| !tied.is_last) {
+                tied.node = system.lie_derivative(drift, tied.node);
+            }
+            order += 1;
+        }
+        for (tied, output) in current.iter().zip(outputs) {
+            if !self.gives_the_last(system, tied) {
+                let zero = system.graph.integer(0);
+                return Err(Unsolved::TiesOtherwise(quote(system, zero, output)));
+            }
         }
         Ok(self)
+    }
+
+    /// Whether the last derivative of an output gives the highest derivative of a signal that it mentions, so that there are signals for any values of the others;
+    /// or mentions none that is not given already. Where that signal has symbols for further derivatives, some other one has to be free for these.
+    fn gives_the_last(&self, system: &mut System, tied: &Tied) -> bool {
+        let mentioned = system.graph.symbols_of([tied.node]);
+        let last: Vec<Symbol> =
+            mentioned.iter().copied().filter(|symbol| system.is_cut_off(*symbol)).collect();
+        if last.iter().all(|symbol| self.values.contains_key(symbol)) {
+            return true;
+        }
+        let Some(solved) = tied.solved.filter(|symbol| system.known.contains(symbol)) else { return false };
+        let is_highest =
+            system.next_derivative_of_signal(solved).is_none_or(|next| !mentioned.contains(&next));
+        is_highest
+            && (system.is_cut_off(solved)
+                || last.into_iter().any(|symbol| {
+                    let slope = system.partial(tied.node, symbol);
+                    let there = system.graph.substitute(&[slope], &self.values)[0];
+                    !vanishes(system, there)
+                }))
     }
 
     /// Meets one more equation, a derivative of an output, and tells what it was solved for. `before` is what the derivative before

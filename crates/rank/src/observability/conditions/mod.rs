@@ -101,6 +101,11 @@ pub enum Unsolved {
     /// It is not known whether it is met.
     #[error("it is not known whether the condition '{0}' can be met there")]
     NotKnown(String),
+    /// On the branch an output that is zero does not give the last derivatives of known signals.
+    #[error(
+        "there the equation '{0}' ties the known signals otherwise than at generic states: which derivatives they can have is not known"
+    )]
+    TiesOtherwise(String),
     /// There are too many ways to meet them.
     #[error("the conditions are met in more than {MOST_BRANCHES} ways")]
     TooMany,
@@ -111,7 +116,11 @@ impl Unsolved {
     pub fn may_be_met(&self) -> bool {
         match self {
             Unsolved::Unreadable(_) | Unsolved::Never(_) | Unsolved::NeverTogether => false,
-            Unsolved::NotLinear(_) | Unsolved::Several(_) | Unsolved::NotKnown(_) | Unsolved::TooMany => true,
+            Unsolved::NotLinear(_)
+            | Unsolved::Several(_)
+            | Unsolved::NotKnown(_)
+            | Unsolved::TiesOtherwise(_)
+            | Unsolved::TooMany => true,
         }
     }
 }

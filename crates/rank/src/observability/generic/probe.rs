@@ -59,6 +59,8 @@ pub(super) fn seen_in(echelon: &Echelon, asked: &[Vec<u64>]) -> Vec<bool> {
 /// The equations of a system, to be evaluated at random points modulo random primes.
 pub struct Probe {
     pub(super) equations: Equations,
+    /// No derivative of a higher order is one of the system: tied signals have symbols for no more of theirs.
+    highest: Option<usize>,
     /// So many coefficients sufficed at the point before. Where they do not there are more: the answer does not depend on them.
     sufficed: AtomicUsize,
 }
@@ -79,7 +81,11 @@ impl Probe {
 
     /// The same, which asks of functions besides whether they are seen.
     pub(super) fn asking(system: &System, conditions: &Assignment, asked: &[NodeId]) -> Probe {
-        Probe { equations: Equations::new(system, conditions, asked), sufficed: AtomicUsize::new(0) }
+        Probe {
+            equations: Equations::new(system, conditions, asked),
+            highest: system.longest_word(),
+            sufficed: AtomicUsize::new(0),
+        }
     }
 
     /// The rank by order, at one start: outputs are differentiated while a derivative adds to the span.
@@ -91,6 +97,7 @@ impl Probe {
             closed if !rests && closed <= SMALL => 2 * closed + 2,
             closed => closed,
         };
+        let most = self.highest.map_or(most, |highest| most.min(highest + 1));
         let outputs = equations.outputs.max(1);
         let mut length = match self.sufficed.load(Ordering::Relaxed) {
             _ if !rests => most,
