@@ -29,7 +29,15 @@ pub struct SlowShape {
     pub stiffness: f64,
 }
 
+/// Residuals above this many deviations of the readings are no noise.
+const IS_NOISE: f64 = 1.5;
+
 impl SlowShape {
+    /// By what factor a deviation by the covariance is to be taken: errors of readings average out over all of them, and what an order of harmonics leaves does not.
+    pub(super) fn caution(&self) -> f64 {
+        if self.shape.widened > IS_NOISE { (self.shape.samples as f64).sqrt() } else { 1.0 }
+    }
+
     /// Whether the readings are explained: what is left is what errors of their deviation leave, by chi-square within five deviations of its own; exact ones to a part of the mean radius. A shape
     /// that is another leaves more, if only a quarter more: a body that is nearly its own mirror image does.
     pub fn explains(&self, part: f64) -> bool {

@@ -264,7 +264,7 @@ fn is_borne_out(together: &Together<'_>, found: &SlowShape, outline: &Outline, [
     (1..BETWEEN).any(|place| {
         let orientation = from + (to - from) * place as f64 / BETWEEN as f64;
         let [_, stiffness] = together.bent(0, orientation, outline, &found.shape.covariance);
-        -stiffness.value > CERTAIN * stiffness.deviation
+        -stiffness.value > CERTAIN * found.caution() * stiffness.deviation
     })
 }
 
@@ -292,7 +292,7 @@ impl Between {
         let pose = fall.turn[0];
         let mut slope = |part: f64| self.at(part).bent(0, pose, outline, &found.shape.covariance)[0];
         let (here, change) = (slope(fall.at), slope(1.0).value - slope(0.0).value);
-        let spread = CERTAIN * here.deviation / change.abs();
+        let spread = CERTAIN * found.caution() * here.deviation / change.abs();
         if spread.is_nan() { f64::INFINITY } else { spread }
     }
 }
