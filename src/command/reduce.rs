@@ -68,17 +68,21 @@ impl Reduce {
         let place = out.unwrap_or(Path::new("least.proof"));
         let (smaller, outcomes) = decided(&least.text, &import, &self.file, place)
             .map_err(|why| Unusable::report(format!("the least model is not written: {why}"), ""))?;
-        let rank = generic_answer(&smaller, &Assignment::new(), Ceiling::Rests);
+        // of tied signals the rank is that of a branch, which 'rank' looks for
+        let rank = smaller
+            .zero_outputs()
+            .is_empty()
+            .then(|| generic_answer(&smaller, &Assignment::new(), Ceiling::Rests));
         let mut files = Files::default();
         if let Some(out) = out {
             files.text(out, &least.text);
             files.announce(out);
         }
-        let mut object = least_json(&least, &outcomes, &rank);
+        let mut object = least_json(&least, &outcomes, rank.as_ref());
         object["file"] = json!(name_of(&self.file));
         object["written"] = json!(out.map(name_of));
         let all_proved = outcomes.iter().all(|outcome| outcome.ok);
-        let words = least_text(&least, &outcomes, &rank);
+        let words = least_text(&least, &outcomes, rank.as_ref());
         if !self.json && is_printed {
             eprint!("{words}");
         }

@@ -487,3 +487,26 @@ fn where_a_tie_gives_lower_derivatives_nothing_false_is_said() {
         assert!(outcome.ok, "{} {:?}", outcome.id, outcome.verdict);
     }
 }
+
+/// What is asked of the full codistribution without the tie is refused, and not answered off it.
+#[test]
+fn what_knows_no_ties_refuses_them() {
+    let folder = folder();
+    let text = "system \"tied\"\nstate x, y\nknown u(t)\ndrift f  x' = y  y' = 0\noutput 0 = u*x - y\n\
+                sample\n  x in [1, 2]\n  y in [1, 2]\n  u in [1/2, 2]\n  u' in [-4, -1/4]\nclaim a: rank = 1\n";
+    let file = write(&folder, "tied.proof", text);
+    let file = file.to_str().unwrap();
+    for arguments in [
+        &["certify", file, "--boxes", "10"][..],
+        &["trade", file, "--samples", "10"],
+        &["stress", file],
+        &["rank", file, "--accessible"],
+    ] {
+        let found = palmistry(arguments);
+        assert_eq!(found.status.code(), Some(2), "{arguments:?} {}", String::from_utf8_lossy(&found.stdout));
+        let said = String::from_utf8_lossy(&found.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(said.contains("an output is zero"), "{arguments:?} {said}");
+    }
+    let reduced = json(&palmistry(&["reduce", file, "--json"]));
+    assert!(reduced["rank"].is_null(), "{reduced}");
+}

@@ -594,3 +594,40 @@ fn no_name_forges_a_line_of_the_answer() {
     assert!(text.starts_with("  not checked"), "{text}");
     assert!(!text.contains(['\u{1b}', '\u{202e}', '\r', '\u{7}']), "{text:?}");
 }
+
+/// Ranks at states that the file excludes, by its initial conditions or by what it assumes, are not confirmed, however right the arithmetic is.
+#[test]
+fn ranks_at_states_that_the_file_excludes() {
+    let folder = folder();
+    let text = "system \"at rest\"\nstate x, z\nparam k\nassume k > 0\ninitial z = 0\ndrift f  x' = 0  z' = 0\noutput k*z*x\n";
+    let proof = write(&folder, "rests.proof", text);
+    let path = folder.path().join("v.json");
+    let verdicts = path.to_str().unwrap();
+    assert!(
+        palmistry(&["rank", proof.to_str().unwrap(), "--samples", "2", "--verdicts", verdicts])
+            .status
+            .success()
+    );
+    let honest: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    let with = |k: &str, z: &str| {
+        let mut found = honest.clone();
+        // k z dx: of rank one where neither is nought
+        let is_full = k != "0" && z != "0";
+        let state = json!({
+            "state": { "x": number("1"), "k": number(k), "z": number(z) },
+            "rank": usize::from(is_full),
+            "minor": if is_full { json!({ "rows": [0], "columns": [0] }) } else { json!({ "rows": [], "columns": [] }) },
+            "kernel": if is_full { json!([]) } else { json!([["1"]]) },
+        });
+        let rank = &mut found["verdicts"][0]["evidence"]["rank"];
+        rank["listing"] = json!([["symbol", "z"], ["symbol", "k"], ["mul", 1, 0]]);
+        (rank["rows"], rank["words"], rank["states"]) = (json!([[2]]), json!(["k*z*x"]), json!([state]));
+        std::fs::write(&path, found.to_string()).unwrap();
+        let checked = palmistry(&["recheck", verdicts]);
+        (checked.status.code(), String::from_utf8_lossy(&checked.stdout).into_owned())
+    };
+    for (k, z, confirmed) in [("1", "0", true), ("1", "1", false), ("-1", "0", false), ("-1", "1", false)] {
+        let (code, text) = with(k, z);
+        assert_eq!(code, Some(if confirmed { 0 } else { 1 }), "k = {k}, z = {z}: {text}");
+    }
+}

@@ -203,3 +203,18 @@ fn the_program_tells_it() {
     assert_eq!(cut.status.code(), Some(3));
     assert_eq!(palmistry(&["rank", file, "--accessible", "--digits", "9"]).status.code(), Some(2));
 }
+
+/// Where signs part the domain the rank of one part says nothing of another: x' = 2y where y is positive, and nought where it is not.
+#[test]
+fn parts_by_sign_have_ranks_of_their_own() {
+    let mut system: System =
+        "system \"s\" state x, y drift f x' = y + abs(y) y' = 0 input g x' = 0 y' = 1 output x \
+                              sample y in [-2, 1] x in [-1, 1]"
+            .parse()
+            .unwrap();
+    let answer =
+        answer_accessibility(&mut system, &RankQuestion { samples: 30, ..RankQuestion::default() }).unwrap();
+    let branch = &answer.branches[0];
+    assert!(branch.whole.at_least <= 1, "{:?}", branch.whole);
+    assert!(branch.sampled.as_ref().unwrap().rank_histogram.len() == 2);
+}

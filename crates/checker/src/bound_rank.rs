@@ -316,7 +316,11 @@ fn listed_claim(
             _ => return Err(Doubt::OtherClaim("the proof file has no rows of its own")),
         },
     };
-    Ok((BuiltClaim::of_rows(system, rows, is_own, &asked.given)?, is_own))
+    let states = match &record.evidence {
+        Evidence::Rank(found) => found.states.as_slice(),
+        _ => &[],
+    };
+    Ok((BuiltClaim::of_rows(system, rows, is_own, &asked.given, states)?, is_own))
 }
 
 /// The matrix of a claim; minors name rows of the evidence, which may be some of those that the claim has.

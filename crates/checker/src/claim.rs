@@ -3,11 +3,12 @@
 use super::doubt::{Doubt, Missing};
 use super::listing::Listing;
 use super::lowering::Lowering;
+use super::minor::RankedState;
 use super::state::{ExactCoordinate, ExactState};
 use super::witness::{Requirement, Sides};
 use palmistry_lang::{ClaimBody, Statement, System, Value};
 use palmistry_math::expression::syntax::{Equation, Expr, Relation};
-use palmistry_math::expression::{Guard, Need, NodeId, add_guard, gradient};
+use palmistry_math::expression::{Guard, Need, NodeId, Symbol, add_guard, gradient};
 
 /// Of the words of a verdict no more nodes are made.
 const LARGEST_GRAPH: usize = 2_000_000;
@@ -108,6 +109,7 @@ impl BuiltClaim {
         rows: Vec<Vec<NodeId>>,
         are_the_files: bool,
         given: &str,
+        states: &[RankedState],
     ) -> Result<BuiltClaim, Doubt> {
         let mut conditions = Vec::new();
         let mut guards = match are_the_files {
@@ -118,6 +120,22 @@ impl BuiltClaim {
             let read = palmistry_lang::parse_statement(&format!("0 = 0 where {given}"));
             let statement = read.map_err(|_| Doubt::OtherClaim("the conditions cannot be read"))?;
             conditions = compared(system, &statement.conditions, &mut guards)?;
+        }
+        // what the file says of all states: as far as these states have values for it, since what else it mentions may be anything
+        let mut said = system.initial_conditions().to_vec();
+        for assumption in system.assumptions() {
+            let read = palmistry_lang::parse_statement(&format!("0 = 0 where {assumption}"));
+            said.extend(read.map_err(|_| Doubt::OtherClaim("the assumptions cannot be read"))?.conditions);
+        }
+        for equation in said {
+            let found = compared(system, std::slice::from_ref(&equation), &mut guards)?;
+            let symbols = system.graph.symbols_of(found.iter().flat_map(|(left, _, right)| [*left, *right]));
+            let has = |symbol: &Symbol| {
+                states.iter().all(|one| one.state.contains_key(system.symbol_name(*symbol)))
+            };
+            if !states.is_empty() && symbols.iter().all(has) {
+                conditions.extend(found);
+            }
         }
         guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
         let columns = system.unknown_count();

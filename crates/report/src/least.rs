@@ -8,20 +8,28 @@ use palmistry_reduce::{LeastModel, LeftOutState, WhyLeftOut};
 use palmistry_scenes::{PlanRank, Scene, ScenePlan};
 use serde_json::{Value, json};
 
-/// A least model in words: what it has and what was left out, its generic rank, and whether its claims are proved.
-pub fn least_text(least: &LeastModel, outcomes: &[Outcome], rank: &GenericAnswer) -> String {
+/// A least model in words: what it has and what was left out, its generic rank (none of a system whose outputs tie signals, which `rank` decides), and whether its claims are proved.
+pub fn least_text(least: &LeastModel, outcomes: &[Outcome], rank: Option<&GenericAnswer>) -> String {
     let mut out = String::new();
     model_lines(least, &mut out);
-    let known = rank.rank().map_or((rank.at_least, rank.at_most), |rank| (rank, rank));
-    prose(&rank_in_words(known, rank.dimension), &mut out);
+    match rank {
+        Some(rank) => {
+            let known = rank.rank().map_or((rank.at_least, rank.at_most), |rank| (rank, rank));
+            prose(&rank_in_words(known, rank.dimension), &mut out);
+        }
+        None => prose("an output is zero: 'palmistry rank' decides the rank", &mut out),
+    }
     claim_lines(outcomes, &mut out);
     out
 }
 
 /// The same as JSON, with the proof file.
-pub fn least_json(least: &LeastModel, outcomes: &[Outcome], rank: &GenericAnswer) -> Value {
+pub fn least_json(least: &LeastModel, outcomes: &[Outcome], rank: Option<&GenericAnswer>) -> Value {
     let mut object = model_json(least, outcomes);
-    object["rank"] = json!({ "at_least": rank.at_least, "at_most": rank.at_most, "of": rank.dimension });
+    object["rank"] = rank.map_or(
+        Value::Null,
+        |rank| json!({ "at_least": rank.at_least, "at_most": rank.at_most, "of": rank.dimension }),
+    );
     object
 }
 

@@ -1,7 +1,7 @@
 //! The observability codistribution (equations 4.36 and 4.37): the differentials of the outputs and of their repeated
 //! Lie derivatives along words of fields, added shortest first.
 
-use super::conditions::all_vanish;
+use super::conditions::{all_vanish, vanishes};
 use super::generic::{GenericAnswer, Observability, generic_answer, generic_answer_of};
 use super::needed::{CodistributionError, needed};
 use super::saturation::{Ceiling, RankGrowth, Saturation, Stop, is_invariant};
@@ -98,6 +98,13 @@ impl Frame {
     /// Where no field is a drift or an input.
     pub fn new(system: &mut System, conditions: &Assignment) -> Result<Frame, CodistributionError> {
         system.require_motion().map_err(CodistributionError::NoMotion)?;
+        for output in system.zero_outputs() {
+            // off the tie no point is a state of the system, and its rank is none
+            let there = system.graph.substitute(&[output], conditions)[0];
+            if !vanishes(system, there) {
+                return Err(CodistributionError::NotTied);
+            }
+        }
         let around =
             if is_invariant(system, conditions) { Ceiling::Rests } else { rank_around(system, conditions) };
         let generic = generic_answer(system, conditions, around);

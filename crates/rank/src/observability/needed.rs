@@ -25,6 +25,11 @@ pub enum CodistributionError {
     /// A symbol that is declared as an angle is met as a number.
     #[error("'{0}' is declared as an angle but stands outside sin, cos and tan")]
     AngleOutside(String),
+    /// Outputs are zero, and the conditions do not say so.
+    #[error(
+        "an output is zero and ties known signals to states: this is not asked of such a system ('rank' and 'prove' are)"
+    )]
+    NotTied,
     /// Nothing could be evaluated, and why.
     #[error("{0}")]
     NotEvaluated(String),

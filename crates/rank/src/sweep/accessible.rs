@@ -112,6 +112,10 @@ pub fn answer_accessibility_telling(
     system.require_motion().map_err(CodistributionError::NoMotion)?;
     let brackets = "accessibility by brackets is of continuous time";
     system.require_continuous(brackets).map_err(CodistributionError::NoMotion)?;
+    if !system.zero_outputs().is_empty() {
+        let tied = "an output is zero and ties known signals to states, so that nothing drives these at will: accessibility is not decided";
+        return Err(RankError::Condition(tied.to_owned()));
+    }
     let system = &mut without_outputs(system);
     let mut equations = Vec::new();
     for text in system.assumptions().iter().chain(&question.conditions) {
@@ -192,9 +196,9 @@ pub fn answer_accessibility_telling(
                     ..options
                 };
                 let report = sweep(system, &locus, &minor.entries, &minor.entries, few)?;
+                // the least of them: where signs part the domain the rank of one part says nothing of another
                 let sure = report.certified == report.samples;
-                let rank =
-                    if sure { report.rank_histogram.keys().next_back().copied().unwrap_or(0) } else { 0 };
+                let rank = if sure { report.rank_histogram.keys().next().copied().unwrap_or(0) } else { 0 };
                 Ok(RankBounds { at_least: rank.min(bounds.at_most), from_a_state: true, ..bounds })
             };
         let (whole, strong) = (shown(system, found.whole, false)?, shown(system, found.strong, true)?);

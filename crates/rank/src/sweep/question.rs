@@ -190,6 +190,8 @@ pub(crate) fn held_parameters<'a>(
     for field in system.moving_fields() {
         nodes.extend(system.fields[field].components.iter().map(|(_, node)| *node));
     }
+    // what the conditions put in depends on parameters too, as initial values do
+    nodes.extend(solved.values());
     let mentioned = system.graph.symbols_of(nodes);
     let held = |(symbol, info): (Symbol, &SymbolInfo)| {
         let value = info.default.clone().filter(|_| info.range.is_none() && mentioned.contains(&symbol))?;

@@ -151,7 +151,10 @@ pub fn design_text(answer: &DesignAnswer) -> String {
             out.push_str("there is nothing that can be added\n");
         }
         (None, true) => {
-            let _ = writeln!(out, "{all}; no set of up to {up_to} suffices; --at-most looks for larger ones");
+            let _ = writeln!(
+                out,
+                "{all}; no set of up to {up_to} of these suffices; --at-most looks for larger ones"
+            );
         }
         (None, false) => {
             let _ = writeln!(out, "{all}; all sets of up to {up_to} were looked at");
