@@ -4,9 +4,9 @@
 //! Each `y^(j) = 0` is solved for a coordinate in which it is linear. For `j > 0` it is so in the highest derivative of a
 //! signal, with the slope that `y` itself has; where that slope does not vanish (at almost all points of a set that has one part)
 //! the derivatives of the signal are given by the rest, one after the other. No branch is followed on which it does vanish: a rank is
-//! that at almost all points. Derivatives are taken as long as the file's symbols for those of the signals reach.
+//! that at almost all points. So many derivatives are taken as the rows mention of the signals.
 //!
-//! The last of them has to be solved for one of the last derivatives of signals: then there are signals with these derivatives which
+//! The last of them has to be solved for the highest derivative of a signal that it mentions: then there are signals with these derivatives which
 //! keep `y` zero for a while, by the theorem on implicit functions. Where its slope vanishes on all of the branch, as that of `u x - y` where `x = 0`,
 //! the equation ties lower derivatives, the last ones look free and are not, and points with any value of them are none of the system.
 //! There nothing is said.
@@ -16,18 +16,23 @@ use super::{Branch, Unsolved, is_a_constant_but_zero, quote, vanishes};
 use palmistry_lang::{Assignment, System};
 use palmistry_math::expression::{Guard, Need, NodeId, Symbol, add_guard};
 
+/// Equations of no more operations are differentiated beyond what the rows mention, and no oftener than this.
+const SHORT: usize = 2000;
+const MOST_MORE: usize = 8;
+
 /// A derivative of an output that is zero, the last one so far.
 struct Tied {
     node: NodeId,
     /// What it was solved for.
     solved: Option<Symbol>,
-    /// Whether there are no symbols for the next one.
+    /// So many are taken: the rows mention no derivatives of signals beyond those that it gives then.
+    most: usize,
+    /// Whether it is the last of them.
     is_last: bool,
 }
 
 impl Branch {
-    /// The part of the branch on which the outputs that are zero vanish, with all derivatives that the symbols for known signals allow, and at least one more
-    /// than words are long.
+    /// The part of the branch on which the outputs that are zero vanish, with as many derivatives as give all those of signals that words mention.
     ///
     /// # Errors
     /// Where one of them vanishes nowhere, is linear in no coordinate, or vanishes in more than one way, and where the last derivatives of signals are not
@@ -42,18 +47,22 @@ impl Branch {
             self.steps.push(quote(system, zero, *node));
         }
         let drift = system.drift();
-        let mut current: Vec<Tied> =
-            outputs.iter().map(|node| Tied { node: *node, solved: None, is_last: false }).collect();
-        let without_signals = system.longest_word().unwrap_or(0) + 1;
+        let words = system.longest_word().unwrap_or(0);
+        let reach = highest_in_words(system);
+        let tied = |node: &NodeId| {
+            let own = highest_derivative(system, std::iter::once(*node));
+            Tied { node: *node, solved: None, most: words + 1 + reach.saturating_sub(own), is_last: false }
+        };
+        let mut current: Vec<Tied> = outputs.iter().map(tied).collect();
         let mut order = 0;
         loop {
             for tied in current.iter_mut().filter(|tied| !tied.is_last) {
                 tied.solved = self.meet(system, tied.node, order, tied.solved)?;
                 let mentioned = system.graph.symbols_of([tied.node]);
-                let has_signals =
-                    mentioned.iter().any(|symbol| system.derivative_of_signal(*symbol).is_some());
+                // where there are symbols for more derivatives, and no rows for them, these are given too as long as that costs little: the set is one that no field leaves then
+                let is_long = || system.graph.reachable([tied.node]).len() > SHORT;
                 tied.is_last = mentioned.iter().any(|symbol| system.is_cut_off(*symbol))
-                    || !has_signals && order >= without_signals;
+                    || order >= tied.most && (order >= tied.most + MOST_MORE || is_long());
             }
             let Some(drift) = drift.filter(|_| current.iter().any(|tied| !tied.is_last)) else { break };
             for tied in current.iter_mut().filter(|tied| !tied.is_last) {
@@ -71,24 +80,18 @@ impl Branch {
     }
 
     /// Whether the last derivative of an output gives the highest derivative of a signal that it mentions, so that there are signals for any values of the others;
-    /// or mentions none that is not given already. Where that signal has symbols for further derivatives, some other one has to be free for these.
-    fn gives_the_last(&self, system: &mut System, tied: &Tied) -> bool {
+    /// or mentions none that is not given already.
+    fn gives_the_last(&self, system: &System, tied: &Tied) -> bool {
         let mentioned = system.graph.symbols_of([tied.node]);
-        let last: Vec<Symbol> =
-            mentioned.iter().copied().filter(|symbol| system.is_cut_off(*symbol)).collect();
-        if last.iter().all(|symbol| self.values.contains_key(symbol)) {
-            return true;
-        }
-        let Some(solved) = tied.solved.filter(|symbol| system.known.contains(symbol)) else { return false };
-        let is_highest =
-            system.next_derivative_of_signal(solved).is_none_or(|next| !mentioned.contains(&next));
-        is_highest
-            && (system.is_cut_off(solved)
-                || last.into_iter().any(|symbol| {
-                    let slope = system.partial(tied.node, symbol);
-                    let there = system.graph.substitute(&[slope], &self.values)[0];
-                    !vanishes(system, there)
-                }))
+        let is_highest = |symbol: &&Symbol| {
+            let next = system.next_derivative_of_signal(**symbol);
+            system.known.contains(symbol)
+                && system.derivative_of_signal(**symbol).is_some()
+                && next.is_none_or(|next| !mentioned.contains(&next))
+        };
+        let mut highest = mentioned.iter().filter(is_highest);
+        tied.solved.is_some_and(|solved| highest.clone().any(|symbol| *symbol == solved))
+            || highest.all(|symbol| self.values.contains_key(symbol))
     }
 
     /// Meets one more equation, a derivative of an output, and tells what it was solved for. `before` is what the derivative before
@@ -143,6 +146,22 @@ impl Branch {
             values.insert(symbol, value);
         }
     }
+}
+
+/// The highest derivative of a signal that expressions mention.
+fn highest_derivative(system: &System, nodes: impl Iterator<Item = NodeId>) -> usize {
+    let mentioned = system.graph.symbols_of(nodes);
+    mentioned.into_iter().filter_map(|symbol| system.derivative_of_signal(symbol)).max().unwrap_or(0)
+}
+
+/// The highest derivative of a signal in a Lie derivative of an output is this one's, and one more for each field: that of the outputs, or one less than that of the
+/// rates of states, which come in with the first field.
+fn highest_in_words(system: &System) -> usize {
+    let rates = system.moving_fields().into_iter().flat_map(|field| &system.fields[field].components);
+    // what moves a signal is its next derivative, and no rate of a state
+    let of_states = rates.filter(|(symbol, _)| system.derivative_of_signal(*symbol).is_none());
+    let in_rates = highest_derivative(system, of_states.map(|(_, rate)| *rate));
+    highest_derivative(system, system.outputs.iter().map(|(_, node)| *node)).max(in_rates.saturating_sub(1))
 }
 
 /// The next derivative of a signal that the derivative before was solved for, and its slope, where an equation is visibly linear
