@@ -202,8 +202,8 @@ impl PreparedBranch {
         let RankQuestion { digits, recorded, interrupt, .. } = *question;
         let told = Told { samples, digits, recorded, interrupt };
         let by_series = matches!(full, ByStates::Series(_));
-        let mut full = full.report(system, counts.full, told)?;
-        let mut deviations = match full.interrupted || by_series || !wanted {
+        let full = full.report(system, counts.full, told)?;
+        let deviations = match full.interrupted || by_series || !wanted {
             true => None,
             false => standard_deviations(system, &locus, &codistribution, &full, (question.seed, samples))?,
         };
@@ -230,12 +230,6 @@ impl PreparedBranch {
             found.settles_the_rank && generic_rank + found.directions() == system.unknown_count()
         });
         let is_final = codistribution.is_final() || known || settled;
-        // where the rank of all Lie derivatives is not known, or is not that of almost all states, these say what they show
-        let is_short = |rank: usize| rank < system.unknown_count() && (!is_final || rank < generic_rank);
-        full.recorded.retain(|state| !is_short(state.rank));
-        if let Some(found) = &mut deviations {
-            found.may_be_finite = full.rank_histogram.keys().any(|rank| is_short(*rank));
-        }
         let word = |(word, entries): (&crate::observability::Word, &Vec<NodeId>)| TakenRow {
             word: word.text(system),
             entries: entries.clone(),
@@ -245,7 +239,7 @@ impl PreparedBranch {
             entries: entries.to_vec(),
         };
         let own_rows = own.unwrap_or_default().chunks(system.unknown_count());
-        Ok(BranchAnswer {
+        let mut answer = BranchAnswer {
             taken: codistribution.words.iter().zip(&codistribution.rows).map(word).collect(),
             own: own_rows.enumerate().map(numbered).collect(),
             conditions: locus.conditions.clone(),
@@ -266,7 +260,16 @@ impl PreparedBranch {
             full,
             deviations,
             rows,
-        })
+        };
+        // such states show what these Lie derivatives do, and no more
+        let short = answer.is_short_somewhere();
+        let recorded = std::mem::take(&mut answer.full.recorded);
+        answer.full.recorded =
+            recorded.into_iter().filter(|state| !answer.may_be_raised(state.rank)).collect();
+        if let Some(found) = &mut answer.deviations {
+            found.may_be_finite = short;
+        }
+        Ok(answer)
     }
 }
 

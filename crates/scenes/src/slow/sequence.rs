@@ -119,6 +119,10 @@ fn ways(
     let outline = Outline::of(&found.shape.support.coefficients(), 0);
     let rows = readings.rows();
     let mut ways = vec![Way::default()];
+    if !found.kinks.is_empty() {
+        // these are fitted elsewhere
+        return ways;
+    }
     for (place, jump) in jumps.iter().enumerate().filter(|(_, jump)| !jump.predicted) {
         let within =
             |from: usize, to: usize, about: usize| from.saturating_sub(about)..(to + about).min(rows);
@@ -162,13 +166,16 @@ fn another(
     let mut is_new = !way.left_out.is_empty();
     let mut shape = fitted_without(together, found.clone(), way, interrupt)?;
     for _ in 0..=ENDED_BEFORE {
-        let Sequence { phi0, ended } = cheapest(together.readings, together, &shape, sigma)?;
+        let Sequence { phi0, ended } = cheapest(together, &shape, sigma, interrupt)?;
         is_new |= !is_the_same(&phi0, &found.track.phi0);
         if !is_new {
             return None;
         }
         if ended.is_empty() {
             return along(together, &shape, phi0, interrupt);
+        }
+        if !shape.kinks.is_empty() {
+            return None;
         }
         let outline = Outline::of(&shape.shape.support.coefficients(), 0);
         let held = ended.iter().map(|row| {
@@ -197,14 +204,14 @@ fn places(phi0: f64) -> impl Iterator<Item = f64> {
     (0..=PLACES).map(move |at| phi0 + FARTHEST * (2.0 * at as f64 / PLACES as f64 - 1.0))
 }
 
-/// The shape that the other samples tell, with slopes of the potential that are held; as it was where it has kinks, which are fitted elsewhere.
+/// The shape that the other samples tell, with slopes of the potential that are held.
 fn fitted_without(
     together: &Together<'_>,
     found: SlowShape,
     way: Way,
     interrupt: &dyn Fn() -> bool,
 ) -> Option<SlowShape> {
-    if way.left_out.is_empty() || !found.kinks.is_empty() {
+    if way.left_out.is_empty() {
         return Some(found);
     }
     let mut others = together.clone();
@@ -249,13 +256,14 @@ struct Sequence {
     ended: Vec<usize>,
 }
 
-/// The cheapest sequence of poses at a shape; none where a sample has no stable pose.
+/// The cheapest sequence of poses at a shape; none where a sample has no stable pose, or where it was interrupted.
 fn cheapest(
-    readings: &SlowMeasurements,
     together: &Together<'_>,
     found: &SlowShape,
     sigma: f64,
+    interrupt: &dyn Fn() -> bool,
 ) -> Option<Sequence> {
+    let readings = together.readings;
     let outline = Outline::of(&found.shape.support.coefficients(), 0);
     let support = |angle: f64| {
         let [radius, slope, second, _] = outline.support(angle);
@@ -264,6 +272,9 @@ fn cheapest(
     let covariance = &found.shape.covariance;
     let mut all: Vec<Vec<Node>> = Vec::with_capacity(readings.rows());
     for row in 0..readings.rows() {
+        if interrupt() {
+            return None;
+        }
         let poses = stable_poses(&support, readings.palms[row]);
         let own = |pose: f64| together.surprise(row, pose, &outline, covariance, sigma);
         let Some(last) = all.last() else {
