@@ -277,8 +277,11 @@ def at_states(system, record, evidence, seed):
     if is_listed:
         of = system["rows"] if record["asked"]["what"] == "rows_at_states" else None
         where = record["asked"]["where"]
-        system.statement(("rank = 0" if of is None else "rank(rows) = 0") + f" where {where}" * bool(where))
-        conditions, sets, claimed = system.read(where) if where else [], [], None
+        *_, said = system.statement(("rank = 0" if of is None else "rank(rows) = 0") + f" where {where}" * bool(where))
+        given, named = system.read(where) if where else [], {symbol(name) for name in states[0]["state"]}
+        # of what the file assumes, what is about symbols of the states
+        about = {x: {node for gap in all_gaps(x) for node in gap.below() if node.kind == "symbol"} - {symbol("pi")} for x in said}
+        conditions, sets, claimed = [x for x in said if x in given or about[x] <= named], [], None
     else:
         text = system.claims[record["id"]]
         asked, of, claimed, conditions = system.statement(text)

@@ -172,6 +172,13 @@ claim 3: {matrix} except where x = 0
         entry = record(statement, "rank", {"columns": ["column 1", "column 2"], "words": ["row 1"], "states": [state]})
         self.assertEqual(self.answer({**entry, "verdict": "refuted"}), "not checked")
 
+    def test_ranks_at_states_that_the_file_excludes(self):
+        """What a file assumes holds at the states of a rank; what is about other symbols says nothing of them."""
+        for state, word in ((STATE, "half confirmed"), ({**STATE, "k": {"number": "-7"}}, "not confirmed")):
+            self.write(PENDULUM + "assume k > 0, m > 0\n")
+            entry = record("rank", "rank", {**RANKED, "states": [{**RANKED["states"][0], "state": state}]})
+            self.assertEqual(self.answer(entry), word)
+
     def test_what_is_another_statement_is_not_read_as_one(self):
         """A rank of two matrices, or of none; sets that an equation leaves out; the sample box, wherever it is named; discrete time."""
         for statement in ("rank([x, 0; 0, x], [x]) = 2", "rank() = 2", "observable(omega) = 3"):
