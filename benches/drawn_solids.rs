@@ -1,4 +1,4 @@
-//! How often a body in space is recovered from readings alone: so many drawn scenes of 1.76 s, with noise of the contacts in m or without. With
+//! How often a body in space is recovered from measurements alone: so many drawn scenes of 1.76 s, with noise of the contacts in m or without. With
 //! `cargo bench --bench drawn_solids -- 100 177 6 1e-3`, a count, samples, a seed and the noise (0 unless given), it prints a line a scene (what is left of a contact, the greatest relative error of centre, rate, inertia and mass,
 //! the greatest error of all 16 numbers in deviations by the bound that is told) and the counts.
 //!
@@ -22,9 +22,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let sensor = SpaceSensor { noise, ..SpaceSensor::default() };
     let [mut arrived, mut exact, mut lost, mut unfit, mut blind, mut ambiguous, mut silent] = [0; 7];
     for (place, (scene, moments)) in drawn_scenes(seed, count, samples, 1.76).iter().enumerate() {
-        let readings = SpaceMeasurements::of(moments, &sensor, 1).solid(&scene.palms, scene.gravity, &sensor);
+        let measurements =
+            SpaceMeasurements::of(moments, &sensor, 1).solid(&scene.palms, scene.gravity, &sensor);
         let begin = Instant::now();
-        let found = readings.first_state();
+        let found = measurements.first_state();
         let seconds = begin.elapsed().as_secs_f64();
         let Some(state) = found else {
             println!("{place}: lost, {seconds:.1} s");
@@ -37,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             .map(|((found, truth), deviation)| ((found - truth) / deviation).abs())
             .fold(0.0, f64::max);
         let is_right = if noise > 0.0 { off <= DEVIATIONS } else { error < ARRIVED };
-        let (word, sum) = match (state.fits(), state.is_blind(), state.rival, is_right) {
+        let (word, sum) = match (state.fits(), state.is_unobservable(), state.rival, is_right) {
             (false, ..) => ("does not fit", &mut unfit),
             (_, true, ..) => ("blind", &mut blind),
             (_, _, Some(_), _) => ("ambiguous", &mut ambiguous),

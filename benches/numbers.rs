@@ -1,4 +1,4 @@
-//! What an operation costs on each rung of the ladder of numbers, and a whole program over each: the rows of the general
+//! What an operation costs on each number type, and a whole program over each: the rows of the general
 //! regime, at states with rational coordinates.
 //!
 //! `cargo bench --bench numbers`; the counter gives operations (for the rows: states) a second.

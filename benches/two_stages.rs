@@ -17,7 +17,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 /// Errors of centre and inertia over mass, by one method and from one seed.
 fn errors(
     truth: &SpaceTruth,
-    readings: &SolidMeasurements,
+    measurements: &SolidMeasurements,
     draws: Option<usize>,
     seed: u64,
 ) -> Option<[f64; 2]> {
@@ -32,9 +32,9 @@ fn errors(
     };
     let (centre, found) = match draws {
         Some(draws) => {
-            readings.two_stages(&known, draws, seed).map(|end| (end.centre, end.inertia_over_mass))?
+            measurements.two_stages(&known, draws, seed).map(|end| (end.centre, end.inertia_over_mass))?
         }
-        None => readings.first_state().map(|state| (state.centre, state.inertia_over_mass))?,
+        None => measurements.first_state().map(|state| (state.centre, state.inertia_over_mass))?,
     };
     Some([(centre - first.centre).norm(), (found - inertia).norm()])
 }

@@ -53,7 +53,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // the words of Lie derivatives whose differentials span the state space, and what they are
     let words = Codistribution::new(&mut system, &Default::default(), Length::UntilItStops)?;
     for index in &words.needed {
-        println!("{} = {}", words.words[*index].text(&system), system.graph.text(words.values[*index]));
+        println!(
+            "{} = {}",
+            words.lie_derivatives[*index].text(&system),
+            system.graph.text(words.values[*index])
+        );
     }
 
     // the rank at a thousand drawn states, each proved at that very state

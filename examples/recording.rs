@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let interrupt = AtomicBool::new(false);
     let mut task = Task::new(&system, &question, &signals, &interrupt)?;
-    // the error of a rounded reading, evenly spread over the grid
+    // the error of a rounded measurement, evenly spread over the grid
     (task.exact, task.sigma) = (false, 1e-3 / f64::sqrt(12.0));
     let observers: [(&str, &dyn Observer); 3] = [
         ("moving window", &MovingWindow::new(40)),

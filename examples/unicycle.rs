@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             answer.dimension,
             if found.is_final { ", whatever is driven" } else { "" }
         );
-        println!("  by {}", found.words.join(", "));
+        println!("  by {}", found.lie_derivatives.join(", "));
         println!("  at drawn states {:?}, {} certified", found.full.rank_histogram, found.full.certified);
         for direction in &found.full.unobservable {
             let at: Vec<String> =

@@ -1,4 +1,4 @@
-//! A scene in ten lines: what is sought of an oscillator, each with its bound, whether it fits the readings, and where it goes from there. With
+//! A scene in ten lines: what is sought of an oscillator, each with its bound, whether it fits the measurements, and where it goes from there. With
 //! `cargo run --example van_der_pol`:
 //!
 //! ```text

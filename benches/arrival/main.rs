@@ -40,10 +40,10 @@ fn row(noise: f64, count: usize, seed: u64, is_circular: bool) {
         let Some(drawn) = experiment(&text) else { continue };
         held += 1;
         let truth = drawn.truth_at(0.0).expect("a simulation has a truth");
-        let readings = drawn.palm_measurements().expect("a drawn scene tells all");
+        let measurements = drawn.palm_measurements().expect("a drawn scene tells all");
         let one = || {
             let begin = Instant::now();
-            (readings.first_state(), begin.elapsed().as_secs_f64())
+            (measurements.first_state(), begin.elapsed().as_secs_f64())
         };
         // others use the machine, too
         let (found, first) = one();
@@ -107,11 +107,11 @@ fn by_windows(experiment: &Experiment, truth: &[f64]) -> bool {
 fn at_truth(text: &str, noisy: &Experiment) -> Option<[f64; 3]> {
     let (start, end) = (text.find("[sensor]")?, text.find("[observer]")?);
     let exact = experiment(&format!("{}{}", &text[..start], &text[end..]))?;
-    let readings =
+    let measurements =
         PalmMeasurements { sigma: noisy.palm_measurements().ok()?.sigma, ..exact.palm_measurements().ok()? };
     let simulation = exact.simulation.as_ref()?;
     let moment = simulation.trajectory.moments[0];
-    readings.bound_at(&FirstState {
+    measurements.bound_at(&FirstState {
         radii: moment.palms.map(|palm| palm.r),
         rate: moment.omega0,
         gyration: simulation.constants["rho"],

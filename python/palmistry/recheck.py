@@ -292,7 +292,7 @@ def at_states(system, record, evidence, seed):
         doubt("columns that are others")
     if of and len(evidence["columns"]) != len(of[0]):
         doubt("columns that are others")
-    rows, ranks = named_rows(system, evidence["words"], of), []
+    rows, ranks = named_rows(system, evidence["row_names"], of), []
     for state in states:
         root = minor(rows, evidence, state["minor"]["rows"], state["minor"]["columns"])
         mentioned = [x for row in of or [] for x in row]
@@ -313,7 +313,7 @@ def at_states(system, record, evidence, seed):
             doubt("it is the rank that is claimed")
         if not of and rank < len(evidence["columns"]):
             with suppress(NotImplementedError):
-                further = further_rows(system, evidence["words"])
+                further = further_rows(system, evidence["row_names"])
                 if exact_rank(further, witness(system, state["state"], *(x for row in further for x in row))) > rank:
                     doubt("a Lie derivative was left out, with which the rank is greater")
         ranks.append((rank, is_whole or rank == len(evidence["columns"])))
@@ -330,7 +330,7 @@ def boxes(system, record, evidence, _):
     of = system["rows"] if record["asked"]["what"] == "rows_on_boxes" else None
     if list(evidence["columns"]) != system.columns() or not evidence["boxes"]:
         doubt("other columns, or no boxes")
-    rows = named_rows(system, evidence["words"], of)
+    rows = named_rows(system, evidence["row_names"], of)
     system.statement("rank = 0" if of is None else "rank(rows) = 0")
     free, volume, seen = {name: ends for name, ends in whole.items() if ends[0] < ends[1]}, Fraction(0), []
     for given in evidence["boxes"]:
@@ -451,8 +451,8 @@ def verdict_file(path):
     verdicts = json.loads(text, object_pairs_hook=unique, parse_int=numeral(int), parse_float=numeral(float), parse_constant=wrong)
     if verdicts["schema"] != "palmistry-verdicts":
         wrong("another schema")
-    if type(verdicts["version"]) is not int or verdicts["version"] != 3:
-        wrong(f"version {verdicts['version']!r} and not 3: before it verdicts were bound to no claims; write it anew")
+    if type(verdicts["version"]) is not int or verdicts["version"] != 4:
+        wrong(f"version {verdicts['version']!r} and not 4: write it anew")
     return [(f"{record['file']} {record['id']}", record) for record in verdicts["verdicts"]]
 
 def main(arguments):

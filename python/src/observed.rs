@@ -124,7 +124,7 @@ impl ObservationFound {
                 Some(Ok(experiment.record.clone()))
             }
             (Seen::Slow { experiment, .. }, "readings") => Some(experiment.record()),
-            (Seen::Space { experiment, .. }, "readings") => Some(experiment.readings.record()),
+            (Seen::Space { experiment, .. }, "readings") => Some(experiment.measurements.record()),
             (Seen::Moving { experiment, .. } | Seen::Modes { experiment, .. }, "motion") => {
                 match (&experiment.simulation, &experiment.motion) {
                     (Some(simulation), _) => Some(simulation.table()),

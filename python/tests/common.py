@@ -22,6 +22,6 @@ sample
   phi   in [-3, 3]
   omega in [-2, 2]
 claim motion: L(f, f, phi) = -k*sin(phi)
-claim seen: rank = 2
+claim observable: rank = 2
 claim sign: L(f, omega) = k*sin(phi)
 """

@@ -48,7 +48,7 @@ claim 19: omega*(x + m) = k where x = k/omega - m
 """
 
 STATE = {"phi": {"angle": {"sin": "3/5", "cos": "4/5"}}, "omega": {"number": "2"}, "x": {"number": "2"}, "k": {"number": "7"}}
-RANKED = {"columns": ["phi", "omega", "x", "m"], "words": ["phi", "Lf phi", "Lf Lf phi"],
+RANKED = {"columns": ["phi", "omega", "x", "m"], "row_names": ["phi", "Lf phi", "Lf Lf phi"],
           "states": [{"state": STATE, "rank": 2, "minor": {"rows": [0, 1], "columns": [0, 1]}, "kernel": []}]}
 BOX = """
 system "A pendulum whose angle is measured"
@@ -59,7 +59,7 @@ drift f  phi' = omega  omega' = -k*sin(phi)
 output phi
 claim 1: rank = 2
 """
-BOXED = {"columns": ["phi", "omega"], "words": ["phi", "Lf phi", "Lf Lf phi"], "volume": "1",
+BOXED = {"columns": ["phi", "omega"], "row_names": ["phi", "Lf phi", "Lf Lf phi"], "volume": "1",
          "ranges": [{"symbol": "phi", "low": "1/10", "high": "3"}, {"symbol": "omega", "low": "-1", "high": "1"},
                     {"symbol": "k", "low": "2", "high": "2"}],
          "boxes": [{"sides": [["1/10", "1"], ["-1", "1"]], "rows": [0, 1]}, {"sides": [["1", "3"], ["-1", "1"]], "rows": [1, 0]}]}
@@ -141,7 +141,7 @@ claim 3: {matrix} except where x = 0
         path = os.path.join(self.folder.name, "m.proof")
         for place, sense, expected in ((1, "everywhere", "not confirmed"), (2, "generic", None), (3, "except", None)):
             state = {"state": {"x": {"number": "0"}, "y": {"number": "1/3"}}, "rank": 1, "minor": {"rows": [0], "columns": [1]}, "kernel": [["1", "0"]]}
-            evidence = {"rank": {"columns": ["column 1", "column 2"], "words": ["row 1", "row 2"], "requirements": [], "states": [state]}}
+            evidence = {"rank": {"columns": ["column 1", "column 2"], "row_names": ["row 1", "row 2"], "requirements": [], "states": [state]}}
             system = proof_file.System(path)
             text = system.claims[str(place)]
             entry = {"file": "m.proof", "digest": system.digest, "id": str(place), "statement": text, "asked": parts(text),
@@ -169,7 +169,7 @@ claim 3: {matrix} except where x = 0
         statement = "rank([0/x, omega]) = 1 everywhere"
         self.write(PENDULUM + f"claim 0: {statement}\n")
         state = {"state": {**STATE, "x": {"number": "0"}, "omega": {"number": "0"}}, "rank": 0, "minor": {"rows": [], "columns": []}, "kernel": []}
-        entry = record(statement, "rank", {"columns": ["column 1", "column 2"], "words": ["row 1"], "states": [state]})
+        entry = record(statement, "rank", {"columns": ["column 1", "column 2"], "row_names": ["row 1"], "states": [state]})
         self.assertEqual(self.answer({**entry, "verdict": "refuted"}), "not checked")
 
     def test_ranks_at_states_that_the_file_excludes(self):
@@ -200,7 +200,7 @@ claim 3: {matrix} except where x = 0
                             ("rank = 2 where x = 0", "rank = 1 where x = 0")):
             for statement, verdict in ((true, "refuted"), (false, "proved")):
                 self.write(PENDULUM.replace("claim 4: rank = 2\n", "").replace("claim 18: rank = 2 everywhere\n", "") + f"claim 0: {statement}\n")
-                found = {"columns": ["column 1", "column 2"], "words": ["row 1", "row 2"], "states": RANKED["states"]} if "([" in statement else RANKED
+                found = {"columns": ["column 1", "column 2"], "row_names": ["row 1", "row 2"], "states": RANKED["states"]} if "([" in statement else RANKED
                 for kind, evidence in (("proved", {}), ("refuted", {"state": STATE}), ("claimed_rank", {"word": verdict}), ("claimed_rank", {}), ("rank", found),
                                        ("rank", {**found, "states": []}), ("refuted", {}), ("boxes", BOXED)):
                     entry = {**record(statement, kind, evidence), "verdict": verdict}
@@ -280,7 +280,7 @@ claim 3: {matrix} except where x = 0
 
     def test_a_box_around_a_zero_is_not_shown(self):
         self.write('system "A square"\nstate x, y\ndrift f x\' = 0 y\' = 0\noutput x^3/3 + x*y, y\nclaim 1: x = x')
-        box = {"columns": ["x", "y"], "words": ["x^3/3 + x*y", "y"], "volume": "1",
+        box = {"columns": ["x", "y"], "row_names": ["x^3/3 + x*y", "y"], "volume": "1",
                "ranges": [{"symbol": "x", "low": "-1", "high": "2"}, {"symbol": "y", "low": "1/100", "high": "1"}],
                "boxes": [{"sides": [["-1", "2"], ["1/100", "1"]], "rows": [0, 1]}]}
         self.assertEqual(self.word("full rank", "boxes", **box), "confirmed")
@@ -290,7 +290,7 @@ claim 3: {matrix} except where x = 0
     def test_a_box_in_which_an_output_has_no_value_is_not_shown(self):
         """The minor is one everywhere, and has lost the term that is missing at x = 0."""
         self.write("system \"s\"\nstate x, y\ndrift f  x' = 0  y' = 0\noutput x + 0/x, y\n")
-        box = {"columns": ["x", "y"], "words": ["x + 0/x", "y"], "volume": "1",
+        box = {"columns": ["x", "y"], "row_names": ["x + 0/x", "y"], "volume": "1",
                "ranges": [{"symbol": "x", "low": "1/9", "high": "2"}, {"symbol": "y", "low": "0", "high": "1"}],
                "boxes": [{"sides": [["1/9", "2"], ["0", "1"]], "rows": [0, 1]}]}
         self.assertEqual(self.word("full rank", "boxes", **box), "confirmed")
@@ -394,8 +394,8 @@ class Mutants(Folder):
                       changed(low, "state", "x", to={"number": "0"}), changed(low, "state", "x", to={"number": "1/1000000"}),
                       changed(ranked, "states", 0, "rank", to=3), changed(ranked, "states", 0, "minor", "rows", to=[0, 2]),
                       changed(ranked, "states", 0, "minor", "rows", to=[0, 0]), changed(ranked, "states", 0, "minor", "columns", to=[0, 2]),
-                      changed(ranked, "states", 0, "minor", "columns", to=[0, -3]), changed(ranked, "words", 1, to="Lf Lf phi"),
-                      changed(ranked, "words", 1, to="omega"), changed(ranked, "columns", 1, to="x")):
+                      changed(ranked, "states", 0, "minor", "columns", to=[0, -3]), changed(ranked, "row_names", 1, to="Lf Lf phi"),
+                      changed(ranked, "row_names", 1, to="omega"), changed(ranked, "columns", 1, to="x")):
             self.assertIn(self.answer(entry), NOT_SO, json.dumps(entry))
             mutants += 1
         self.write(BOX)
@@ -403,7 +403,7 @@ class Mutants(Folder):
         self.assertEqual(self.answer(boxed), "confirmed")
         for entry in (changed(boxed, "boxes", 0, "rows", to=[0, 2]), changed(boxed, "boxes", 0, "rows", to=[1, 1]),
                       changed(boxed, "boxes", 0, "sides", 0, 1, to="3/2"), changed(boxed, "boxes", 0, "sides", 0, 0, to="0"),
-                      changed(boxed, "boxes", 1, "sides", 0, 1, to="2"), changed(boxed, "volume", to="9/10"), changed(boxed, "words", 1, to="Lf Lf phi"),
+                      changed(boxed, "boxes", 1, "sides", 0, 1, to="2"), changed(boxed, "volume", to="9/10"), changed(boxed, "row_names", 1, to="Lf Lf phi"),
                       changed(boxed, "boxes", to=[]), changed(boxed, "columns", to=["phi"])):
             self.assertIn(self.answer(entry), NOT_SO, json.dumps(entry))
             mutants += 1
@@ -454,11 +454,11 @@ class Damage(Folder):
         return status, told.getvalue()
 
     def test_verdict_files(self):
-        whole = json.dumps({"schema": "palmistry-verdicts", "version": 3, "verdicts": [self.bound(entry) for entry in GOOD]})
+        whole = json.dumps({"schema": "palmistry-verdicts", "version": 4, "verdicts": [self.bound(entry) for entry in GOOD]})
         status, told = self.run_on(whole)
         self.assertEqual(status, 0, told)
         self.assertIn("9 confirmed, 3 half confirmed, 5 consistent", told)
-        for text in ("", "[]", "{}", "nul", whole[:200], "[" * 100_000, whole.replace("palmistry-verdicts", "x"), whole.replace('"version": 3', '"version": 2'), '{"schema": 1}'):
+        for text in ("", "[]", "{}", "nul", whole[:200], "[" * 100_000, whole.replace("palmistry-verdicts", "x"), whole.replace('"version": 4', '"version": 3'), '{"schema": 1}'):
             self.assertEqual(self.run_on(text)[0], 2)
         rng = random.Random(7)
         values = [None, 0, -1, 10**9, "", "1/0", "9" * 5000, [], {}, [[]], True, 1.5, "x'" * 50]
@@ -471,7 +471,7 @@ class Damage(Folder):
                     inner[key] = rng.choice(values)
                     break
                 inner = inner[key]
-            self.assertIn(self.run_on(json.dumps({"schema": "palmistry-verdicts", "version": 3, "verdicts": [entry]}))[0], (0, 1, 2))
+            self.assertIn(self.run_on(json.dumps({"schema": "palmistry-verdicts", "version": 4, "verdicts": [entry]}))[0], (0, 1, 2))
 
     def test_proof_files(self):
         rng = random.Random(8)
@@ -527,7 +527,7 @@ class Damage(Folder):
             with contextlib.redirect_stderr(io.StringIO()):
                 self.assertEqual(recheck.main([path]), 2)
         forged = {**witness, "id": "1\nconfirmed     pendulum.proof 1: \ud800\u001b[2J\u202e", "file": "x\rconfirmed"}
-        status, told = self.run_on(json.dumps({"schema": "palmistry-verdicts", "version": 3, "verdicts": [forged]}))
+        status, told = self.run_on(json.dumps({"schema": "palmistry-verdicts", "version": 4, "verdicts": [forged]}))
         self.assertEqual(len(told.splitlines()), 2, told)
         self.assertTrue(told.startswith("not checked") and told.isascii() and "\x1b" not in told, told)
         self.assertLess(time.monotonic() - begin, 60)
@@ -555,7 +555,7 @@ class Damage(Folder):
         most, recheck.RUN = recheck.RUN, 20_000
         self.addCleanup(setattr, recheck, "RUN", most)
         entry = {**self.bound(GOOD[0]), "evidence": {"proved": {}}}
-        status, told = self.run_on(json.dumps({"schema": "palmistry-verdicts", "version": 3, "verdicts": [entry] * 1000}))
+        status, told = self.run_on(json.dumps({"schema": "palmistry-verdicts", "version": 4, "verdicts": [entry] * 1000}))
         self.assertEqual((status, told.count("the budget of work is spent") > 800, "multiplied out" in told), (0, True, True), told[-200:])
         box = {**BOXED, "boxes": [BOXED["boxes"][0]] * 100_000}
         self.write(BOX)
@@ -563,11 +563,11 @@ class Damage(Folder):
 
     def test_numbers_and_keys(self):
         """What two readers of JSON may read as two things is no verdict file; a count is a whole number."""
-        whole = json.dumps({"schema": "palmistry-verdicts", "version": 3, "verdicts": [self.bound(GOOD[0])]})
+        whole = json.dumps({"schema": "palmistry-verdicts", "version": 4, "verdicts": [self.bound(GOOD[0])]})
         self.assertEqual(self.run_on(whole)[0], 0)
         for number_ in ("NaN", "Infinity", "-Infinity", "1e999", "-1e999", "9" * 1_000_000, "0." + "9" * 1_000_000):
             self.assertEqual(self.run_on(whole[:-1] + f', "seed": {number_}}}')[0], 2, number_[:9])
-        for old, new in (('"version": 3', '"version": 3.0'), ('"version": 3', '"version": 3, "version": 3'), ('"id": "1"', '"id": "2", "id": "1"')):
+        for old, new in (('"version": 4', '"version": 4.0'), ('"version": 4', '"version": 4, "version": 4'), ('"id": "1"', '"id": "2", "id": "1"')):
             self.assertIn(old, whole)
             self.assertEqual(self.run_on(whole.replace(old, new))[0], 2, new)
         self.assertEqual(self.run_on("[" + "[]," * 5_000_000 + "[]]")[0], 2)

@@ -2,13 +2,14 @@
 
 use super::arguments::By;
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
-use super::output::{Files, Form, progress};
+use super::output::{Files, Form, progress, read_scene};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::experiment::space::SpaceScene;
-use palmistry::experiment::{AdviceLimits, AdviceQuestion, Scene, advise};
+use palmistry::experiment::{AdviceLimits, AdviceQuestion, advise};
 use palmistry::pose_surface::numbers;
 use palmistry::report::{advice_json, advice_text};
+use palmistry::system::Code;
 use std::path::PathBuf;
 
 /// Plans an experiment: what to measure besides in any system, or how palms should move.
@@ -77,10 +78,11 @@ pub(crate) struct Advise {
 fn range(option: &str, text: Option<&str>, default: [f64; 2]) -> miette::Result<[f64; 2]> {
     let Some(text) = text else { return Ok(default) };
     let help = "write the least and the greatest angle with a comma between them";
-    let found = numbers(text).map_err(|why| Unusable::report(format!("{option}: {why}"), help))?;
+    let found =
+        numbers(text).map_err(|why| Unusable::report(Code::Option, format!("{option}: {why}"), help))?;
     match found[..] {
         [low, high] if low < high && low.is_finite() && high.is_finite() => Ok([low, high]),
-        _ => Err(Unusable::report(format!("{option}: '{text}' is no range of angles"), help)),
+        _ => Err(Unusable::report(Code::Option, format!("{option}: '{text}' is no range of angles"), help)),
     }
 }
 
@@ -91,7 +93,11 @@ impl Advise {
         }
         if self.file.extension().is_some_and(|extension| extension == "proof") {
             let help = "name unknowns of a proof file, as in --identify k1,k2 or --identify all; a scene is a TOML file";
-            return Err(Unusable::report("what is to be identified in this proof file is not said", help));
+            return Err(Unusable::report(
+                Code::Option,
+                "what is to be identified in this proof file is not said",
+                help,
+            ));
         }
         if let Some(scene) = SpaceScene::read(&self.file) {
             return self.run_space(scene?);
@@ -101,13 +107,13 @@ impl Advise {
         let rate = self.rate.unwrap_or(3.0);
         if !(rate > 0.0 && rate.is_finite()) {
             let message = format!("--rate: palms that turn at no more than {rate} rad/s do not move");
-            return Err(Unusable::report(message, "give a rate above zero"));
+            return Err(Unusable::report(Code::Option, message, "give a rate above zero"));
         }
         if self.runs.is_some() {
             let help = "leave it out, or name a scene with motion = \"spatial\"";
-            return Err(Unusable::report("--runs is for bodies in space", help));
+            return Err(Unusable::report(Code::Option, "--runs is for bodies in space", help));
         }
-        let scene = Scene::read(&self.file)?;
+        let scene = read_scene(&self.file)?;
         let trials = self.trials.unwrap_or(400);
         let question = AdviceQuestion {
             limits: AdviceLimits { angles: [first, second], rate },

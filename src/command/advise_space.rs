@@ -6,6 +6,7 @@ use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use palmistry::experiment::space::{RunsQuestion, SpaceScene, advise_runs};
 use palmistry::report::{runs_advice_json, runs_advice_text};
+use palmistry::system::Code;
 
 impl Advise {
     /// Seeks runs that widen the hull of all contacts.
@@ -13,13 +14,17 @@ impl Advise {
         for (is_given, option) in [(self.angle1.is_some(), "--angle1"), (self.angle2.is_some(), "--angle2")] {
             if is_given {
                 let help = "leave it out: in space the palms move as the scene says, and the body's initial pose is searched for";
-                return Err(Unusable::report(format!("{option} is not for bodies in space"), help));
+                return Err(Unusable::report(
+                    Code::Option,
+                    format!("{option} is not for bodies in space"),
+                    help,
+                ));
             }
         }
         let rate = self.rate.unwrap_or(0.5);
         if !(rate >= 0.0 && rate.is_finite()) {
             let message = format!("--rate: no body is set turning at {rate} rad/s");
-            return Err(Unusable::report(message, "give a rate from zero on"));
+            return Err(Unusable::report(Code::Option, message, "give a rate from zero on"));
         }
         let (runs, trials) = (self.runs.unwrap_or(4), self.trials.unwrap_or(32));
         let question = RunsQuestion {

@@ -7,6 +7,7 @@ use super::{Status, Unusable};
 use palmistry::System;
 use palmistry::design::{AdditionKind, DesignQuestion, design};
 use palmistry::report::{design_json, design_text};
+use palmistry::system::Code;
 use std::path::Path;
 
 impl Advise {
@@ -22,7 +23,7 @@ impl Advise {
         ];
         if let Some((_, option)) = of_scenes.iter().find(|(is_given, _)| *is_given) {
             let help = "leave it out, or leave out --identify and name a scene";
-            return Err(Unusable::report(format!("{option} is for scenes"), help));
+            return Err(Unusable::report(Code::Option, format!("{option} is for scenes"), help));
         }
         let system = System::read(&self.file)?;
         let folder = self.file.parent().unwrap_or(Path::new(""));
@@ -41,7 +42,7 @@ impl Advise {
         }
         let found = design(&system, &question);
         bar.finish_and_clear();
-        let answer = found.map_err(|why| Unusable::report(why.to_string(), ""))?;
+        let answer = found.map_err(|why| Unusable::report(Code::Question, why.to_string(), ""))?;
         begin_to_tell();
         let is_answered = answer.is_met || !answer.designs.is_empty();
         let status = match answer.open {

@@ -13,6 +13,7 @@ use palmistry::expression::Symbol;
 use palmistry::file::{note, read_text};
 use palmistry::foreign::shown_path;
 use palmistry::report::{percent, region_curve, region_json, region_map, region_text, unit_of};
+use palmistry::system::Code;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -111,6 +112,7 @@ impl Certify {
         let rows = match (self.rows, self.order) {
             (Rows::Own, Some(_)) => {
                 return Err(Unusable::report(
+                    Code::Option,
                     "the file's own rows have no order",
                     "leave out --order, or --rows own",
                 ));
@@ -121,15 +123,15 @@ impl Certify {
         let map = self.map_of(&system)?;
         let unit = |symbol| unit_of(&system, system.symbol_name(symbol));
         let units = map.map_or([None, None], |(x, y)| [unit(x), unit(y)]);
-        let mut region =
-            Region::new(&mut system, rows, &ranges, map).map_err(|why| Unusable::report(why, ""))?;
+        let mut region = Region::new(&mut system, rows, &ranges, map)
+            .map_err(|why| Unusable::report(Code::Question, why, ""))?;
         if self.verdicts.is_some() {
             region.keep_boxes(self.verdict_boxes as usize);
         }
         if let Some(file) = &self.state {
             if file.exists() && !file.is_file() {
                 let message = format!("{} is no file that a state could be kept in", shown_path(file));
-                return Err(Unusable::report(message, "name a file with --state"));
+                return Err(Unusable::report(Code::Saved, message, "name a file with --state"));
             }
             resume(&mut region, file)?;
         }
@@ -182,6 +184,7 @@ impl Certify {
         }
         if !self.state.as_ref().is_some_and(|file| file.exists()) {
             return Err(Unusable::report(
+                Code::Option,
                 "the open boxes of a search are dealt out, and '--state' names none",
                 "search for a while with --state FILE first, without --shard",
             ));
@@ -210,7 +213,7 @@ impl Certify {
         if let Some(folder) = merge {
             let found = parts.all(folder)?;
             let region = reader.into_inner().unwrap_or_else(PoisonError::into_inner);
-            region.merge(found).map_err(|why| Unusable::report(why, NO_WHOLE))?;
+            region.merge(found).map_err(|why| Unusable::report(Code::Saved, why, NO_WHOLE))?;
             if let Some(file) = &self.merged {
                 files.text(file, &region.saved());
             }
@@ -275,7 +278,7 @@ impl Certify {
         match self.map.as_slice() {
             [] => Ok(None),
             [x, y] if x.trim() != y.trim() => Ok(Some((system.own_symbol(x)?, system.own_symbol(y)?))),
-            _ => Err(Unusable::report("a map has two coordinates", "as in --map omega0,r1")),
+            _ => Err(Unusable::report(Code::Option, "a map has two coordinates", "as in --map omega0,r1")),
         }
     }
 }
@@ -300,13 +303,18 @@ fn resume(region: &mut Region, file: &Path) -> miette::Result<()> {
     }
     let text = read_text(file, LONGEST_STATE).map_err(|why| {
         Unusable::report(
+            Code::Saved,
             format!("cannot read {}: {why}", shown_path(file)),
             "the state of a search is a file",
         )
     })?;
     region.resume(&text).map_err(|why| {
         let message = format!("{} cannot be taken up: {why}", shown_path(file));
-        Unusable::report(message, "name another file with --state, or delete this one to begin anew")
+        Unusable::report(
+            Code::Saved,
+            message,
+            "name another file with --state, or delete this one to begin anew",
+        )
     })?;
     if region.is_finished() {
         note(&format!("{} is finished: no box in it is open any more", shown_path(file)));

@@ -10,6 +10,7 @@ use palmistry::claim::{Kept, Selection, UnmetPattern};
 use palmistry::report::{
     ClaimsForm, ClaimsSummary, Shown, claim_json, claims_json, claims_text, junit, statement_latex_in,
 };
+use palmistry::system::Code;
 use palmistry::{Outcome, System};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -115,10 +116,10 @@ impl Claims {
 /// That a pattern of `--only` is met by no claim.
 pub(crate) fn no_such_claim(unmet: &UnmetPattern) -> miette::Report {
     let help = unmet.nearest.as_ref().map(|near| format!("perhaps you meant '{near}'"));
-    Unusable::report(unmet.to_string(), help.unwrap_or_default())
+    Unusable::report(Code::Question, unmet.to_string(), help.unwrap_or_default())
 }
 
 /// That there is nothing to decide.
 pub(crate) fn no_claims() -> miette::Report {
-    Unusable::report("these files claim nothing", "add a line such as: claim 1: L(f, x) = v")
+    Unusable::report(Code::Question, "these files claim nothing", "add a line such as: claim 1: L(f, x) = v")
 }

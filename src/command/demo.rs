@@ -5,6 +5,7 @@ use super::output::{Files, Form, print_text};
 use super::{Status, Unusable, interrupt};
 use clap::Args;
 use palmistry::foreign::{name_of, shown_path};
+use palmistry::system::Code;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -60,10 +61,15 @@ impl Demo {
         let folder = &self.folder;
         refuse_taken(folder)?;
         super::new::fill(folder, FILES).map_err(|error| {
-            Unusable::report(format!("cannot make {}: {error}", shown_path(folder)), "choose another place")
+            Unusable::report(
+                Code::Place,
+                format!("cannot make {}: {error}", shown_path(folder)),
+                "choose another place",
+            )
         })?;
         let program = own_path().map_err(|error| {
             Unusable::report(
+                Code::System,
                 format!("this program does not find itself: {error}"),
                 "call it by its whole path",
             )
@@ -110,9 +116,9 @@ impl Demo {
         if self.json {
             command.stdout(Stdio::null()).stderr(Stdio::null());
         }
-        let status = command
-            .status()
-            .map_err(|error| Unusable::report(format!("cannot run {}: {error}", shown_path(program)), ""))?;
+        let status = command.status().map_err(|error| {
+            Unusable::report(Code::System, format!("cannot run {}: {error}", shown_path(program)), "")
+        })?;
         Ok(status.code())
     }
 }

@@ -9,6 +9,7 @@ use dashu::rational::RBig;
 use palmistry::claim::{EvaluationError, evaluate};
 use palmistry::file;
 use palmistry::report::{ValueAsked, expression_latex_in, how_certain, value_json, value_text};
+use palmistry::system::Code;
 use palmistry::{System, ValueError};
 use serde_json::json;
 use std::path::PathBuf;
@@ -88,6 +89,6 @@ fn explain(error: EvaluationError) -> miette::Report {
     };
     match error {
         EvaluationError::Read(error) => error.into(),
-        error => Unusable::report(error.to_string(), help),
+        error => Unusable::report(Code::Question, error.to_string(), help),
     }
 }

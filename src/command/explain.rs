@@ -29,6 +29,7 @@ impl Explain {
             Some(id) => vec![Code::of(id).ok_or_else(|| {
                 let known: Vec<&str> = all().map(Code::id).collect();
                 Unusable::report(
+                    Code::Option,
                     format!("there is no code '{id}'"),
                     format!("the codes are {}", known.join(", ")),
                 )

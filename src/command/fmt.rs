@@ -6,7 +6,7 @@ use super::{Status, Unusable};
 use clap::Args;
 use palmistry::file;
 use palmistry::foreign::{name_of, shown_path};
-use palmistry::system::format_text;
+use palmistry::system::{Code, format_text};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -40,7 +40,7 @@ impl Fmt {
         for path in proof_files(&self.paths)? {
             let shown = name_of(&path);
             let text = file::read_text(&path, LONGEST_FILE)
-                .map_err(|why| Unusable::report(format!("cannot read {shown}: {why}"), ""))?;
+                .map_err(|why| Unusable::report(Code::File, format!("cannot read {shown}: {why}"), ""))?;
             let formatted = format_text(&shown, &text)?;
             if formatted != text {
                 changed.push((path, formatted));

@@ -9,6 +9,7 @@ use palmistry::import::{
     ForeignFormat, ForeignUnknowns, ImportQuestion, ImportedModel, ImportedProblem, import, import_petab,
     is_petab, petab_beside,
 };
+use palmistry::system::Code;
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -105,7 +106,7 @@ impl Import {
     pub fn run(self) -> miette::Result<Status> {
         let shown = name_of(&self.file);
         let text = file::read_old_text(&self.file, LONGEST_FILE)
-            .map_err(|why| Unusable::report(format!("cannot read {shown}: {why}"), ""))?;
+            .map_err(|why| Unusable::report(Code::File, format!("cannot read {shown}: {why}"), ""))?;
         if matches!(self.from, Some(From::Petab)) || self.from.is_none() && is_petab(&text) {
             return self.run_petab(&shown, &text);
         }
@@ -188,6 +189,7 @@ impl Import {
         if let Some((_, option)) = of_models.iter().find(|(is_given, _)| *is_given) {
             let message = format!("{option} is not for a PEtab problem");
             return Err(Unusable::report(
+                Code::Option,
                 message,
                 "leave it out: its tables say which parameters are estimated and what is measured",
             ));

@@ -5,6 +5,7 @@
 use super::output::{Form, print_json, print_text};
 use super::{Status, Unusable};
 use palmistry::file;
+use palmistry::system::Code;
 use serde_json::json;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -104,6 +105,7 @@ pub(crate) fn watched(
     });
     let thread = thread.map_err(|error| {
         Unusable::report(
+            Code::System,
             format!("the system gives no thread to work on: {error}"),
             "end other programs first",
         )
@@ -117,7 +119,9 @@ pub(crate) fn watched(
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => match thread.join() {
                 Err(panic) => std::panic::resume_unwind(panic),
-                Ok(()) => return Err(Unusable::report("the work has ended without a result", "")),
+                Ok(()) => {
+                    return Err(Unusable::report(Code::Question, "the work has ended without a result", ""));
+                }
             },
         }
         if asked.is_none() && interrupted() {

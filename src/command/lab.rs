@@ -7,6 +7,7 @@ use clap::Args;
 use palmistry::file::note;
 use palmistry::foreign::shown_path;
 use palmistry::lab::{Access, LabError, LabOptions, LabServer, QuestionLimits, answer, open_in_browser};
+use palmistry::system::Code;
 use serde_json::{Value, json};
 use std::ffi::OsString;
 use std::io::{Read, Write};
@@ -112,7 +113,8 @@ impl Lab {
     fn become_another(&self) -> miette::Result<Status> {
         self.of_one.limit();
         let program = std::env::current_exe();
-        let failed = |why| Unusable::report(format!("the program cannot be started: {why}"), "");
+        let failed =
+            |why| Unusable::report(Code::System, format!("the program cannot be started: {why}"), "");
         let mut command = std::process::Command::new(program.map_err(failed)?);
         command.args(&self.then);
         #[cfg(unix)]
@@ -126,7 +128,11 @@ impl Lab {
 
     fn server(&self) -> miette::Result<(LabServer, Access)> {
         let program = std::env::current_exe().map_err(|why| {
-            Unusable::report(format!("the program does not find itself: {why}"), "start it by its full path")
+            Unusable::report(
+                Code::System,
+                format!("the program does not find itself: {why}"),
+                "start it by its full path",
+            )
         })?;
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let here = |port| SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), port);
@@ -180,13 +186,15 @@ impl Lab {
         };
         server.map(|server| (server, access.clone())).map_err(|why| match why {
             LabError::Address(address, why) => Unusable::report(
+                Code::System,
                 format!("cannot listen on {address}: {why}"),
                 "choose another port, or 0 for any free one",
             ),
             LabError::Folder(folder, why) => {
-                Unusable::report(format!("cannot read {}: {why}", shown_path(&folder)), "")
+                Unusable::report(Code::File, format!("cannot read {}: {why}", shown_path(&folder)), "")
             }
             LabError::Threads(why) => Unusable::report(
+                Code::System,
                 format!("the system gives no thread to work on: {why}"),
                 "end other programs first",
             ),
@@ -200,7 +208,11 @@ impl OfOne {
         self.limit();
         let mut question = String::new();
         std::io::stdin().read_to_string(&mut question).map_err(|why| {
-            Unusable::report(format!("cannot read the question: {why}"), "it comes from 'palmistry lab'")
+            Unusable::report(
+                Code::System,
+                format!("cannot read the question: {why}"),
+                "it comes from 'palmistry lab'",
+            )
         })?;
         let out = Mutex::new(std::io::stdout());
         let tell = |line: Value| {
@@ -218,7 +230,9 @@ impl OfOne {
                 .spawn_scoped(scope, || answer(&question, within.as_deref(), &work, &tell));
             answered.map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
         })
-        .map_err(|why| Unusable::report(format!("the system gives no thread to work on: {why}"), ""))?;
+        .map_err(|why| {
+            Unusable::report(Code::System, format!("the system gives no thread to work on: {why}"), "")
+        })?;
         Ok(Status::AsExpected)
     }
 

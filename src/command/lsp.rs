@@ -4,6 +4,7 @@ use super::interrupt::{STACK, interrupted};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::lsp::{SessionEnd, serve, standard_streams};
+use palmistry::system::Code;
 
 /// Serves an editor over standard input and output, by the Language Server Protocol.
 ///
@@ -27,6 +28,7 @@ impl Lsp {
         });
         let (served, channel) = begun.map_err(|error| {
             Unusable::report(
+                Code::System,
                 format!("the system gives no thread to work on: {error}"),
                 "end other programs first",
             )
@@ -38,6 +40,7 @@ impl Lsp {
         }
         channel.join().map_err(|error| {
             Unusable::report(
+                Code::System,
                 format!("the channel to the editor broke: {error}"),
                 "'palmistry lsp' is started by an editor",
             )

@@ -4,6 +4,7 @@ use super::output::{Files, Form, print_text};
 use super::{Cli, Status, Unusable};
 use clap::{Args, CommandFactory};
 use palmistry::foreign::shown_path;
+use palmistry::system::Code;
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -41,8 +42,9 @@ pub(super) fn pages() -> Result<Vec<(String, String)>, std::io::Error> {
 
 impl Man {
     pub fn run(self) -> miette::Result<Status> {
-        let pages =
-            pages().map_err(|error| Unusable::report(format!("the pages cannot be made: {error}"), ""))?;
+        let pages = pages().map_err(|error| {
+            Unusable::report(Code::System, format!("the pages cannot be made: {error}"), "")
+        })?;
         let Some(folder) = self.out else {
             print_text(pages[0].1.trim_end_matches('\n'))?;
             return Ok(Status::AsExpected);

@@ -40,7 +40,7 @@ mod recheck;
 mod reduce;
 mod reparametrise;
 mod shards;
-mod slow_told;
+mod slow_text;
 mod stress;
 mod terminal;
 mod threads;
@@ -53,6 +53,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 use miette::{Diagnostic, Report};
 use output::Form;
 use palmistry::file;
+use palmistry::system::Code;
+use std::fmt::Display;
 use std::process::ExitCode;
 
 /// Verifies mathematics about nonlinear control systems: observability, identifiability, Lie derivatives, published equations.
@@ -138,19 +140,30 @@ impl Status {
     }
 }
 
-/// Input that could not be used, in words.
-#[derive(Debug, Diagnostic, thiserror::Error)]
+/// Input that could not be used, or a machine that refuses.
+#[derive(Debug, thiserror::Error)]
 #[error("{message}")]
 pub(crate) struct Unusable {
+    pub code: Code,
     pub message: String,
-    #[help]
-    pub help: Option<String>,
+    /// What to do; may be empty.
+    pub help: String,
+}
+
+/// The help names the code, whose page has an example.
+impl Diagnostic for Unusable {
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        let more = self.code.reference();
+        Some(Box::new(match self.help.as_str() {
+            "" => more,
+            help => format!("{help}\n{more}"),
+        }))
+    }
 }
 
 impl Unusable {
-    pub fn report(message: impl Into<String>, help: impl Into<String>) -> Report {
-        let help: String = help.into();
-        Report::new(Unusable { message: message.into(), help: (!help.is_empty()).then_some(help) })
+    pub fn report(code: Code, message: impl Into<String>, help: impl Into<String>) -> Report {
+        Report::new(Unusable { code, message: message.into(), help: help.into() })
     }
 }
 
@@ -274,7 +287,7 @@ fn not_understood(error: &clap::Error) -> ExitCode {
         }
         let _ = output::print_json(&output::usage_json(&text));
     }
-    file::note(text.trim_end_matches('\n'));
+    file::note(&format!("{}\n{}", text.trim_end_matches('\n'), Code::Option.reference()));
     ExitCode::from(2)
 }
 

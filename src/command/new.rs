@@ -5,6 +5,7 @@ use super::{Status, Unusable};
 use clap::Args;
 use palmistry::foreign::{name_of, shown_path};
 use palmistry::paper::MANIFEST;
+use palmistry::system::Code;
 use serde_json::json;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -39,7 +40,11 @@ impl New {
         let folder = &self.folder;
         refuse_taken(folder)?;
         fill(folder, TEMPLATE).map_err(|error| {
-            Unusable::report(format!("cannot make {}: {error}", shown_path(folder)), "choose another place")
+            Unusable::report(
+                Code::Place,
+                format!("cannot make {}: {error}", shown_path(folder)),
+                "choose another place",
+            )
         })?;
         let paths: Vec<PathBuf> = TEMPLATE.iter().map(|(name, _)| folder.join(name)).collect();
         let shown = shown_path(folder);
@@ -81,7 +86,11 @@ pub(super) fn fill(folder: &Path, files: Folder<'_>) -> std::io::Result<()> {
 pub(super) fn refuse_taken(folder: &Path) -> miette::Result<()> {
     let taken = |what: &str| {
         let message = format!("{} {what}", shown_path(folder));
-        Err(Unusable::report(message, "name a folder that is not there yet; nothing was written"))
+        Err(Unusable::report(
+            Code::Place,
+            message,
+            "name a folder that is not there yet; nothing was written",
+        ))
     };
     match std::fs::read_dir(folder) {
         Ok(mut entries) => match entries.next() {

@@ -3,9 +3,9 @@
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, nothing_found, watched};
 use super::observe_stream;
 use super::observe_studies::studies;
-use super::output::{Files, Form, print_in_lines, progress};
+use super::output::{Files, Form, print_in_lines, progress, read_scene};
 use super::shards::{NO_WHOLE, Parts, Shards};
-use super::slow_told::KeptSlow;
+use super::slow_text::KeptSlow;
 use super::{Status, Unusable};
 use clap::Args;
 use indicatif::ProgressBar;
@@ -21,6 +21,7 @@ use palmistry::mechanics::moving::Ended;
 use palmistry::observer::RecordError;
 use palmistry::report::{Observed, forget_seconds, observe_json, observe_page, observe_text};
 use palmistry::sweep::shard_of;
+use palmistry::system::Code;
 use std::path::{Path, PathBuf};
 
 /// Simulates a system and its sensors, or reads a recording, and runs observers that estimate its state: the system of any proof file by its own
@@ -97,7 +98,7 @@ impl Observe {
         watched(move || self.work(&filled), move || kept.tell().unwrap_or_else(|| nothing_found(form)))
     }
 
-    /// Whether the command line says that readings come from standard input; a scene may say so too.
+    /// Whether the command line says that measurements come from standard input; a scene may say so too.
     pub fn reads_a_stream(&self) -> bool {
         self.data.as_deref() == Some(Path::new("-"))
     }
@@ -112,7 +113,7 @@ impl Observe {
         if let Some(joint) = JointScene::read(&self.scene) {
             return self.run_joint(joint?);
         }
-        let mut scene = Scene::read(&self.scene)?;
+        let mut scene = read_scene(&self.scene)?;
         scene.seed = self.seed.unwrap_or(scene.seed);
         let from = self.data.as_deref().or(scene.data.record.as_deref());
         let is_stream = from == Some(Path::new("-"));
@@ -129,11 +130,12 @@ impl Observe {
         let asks_for_studies = self.studies || self.shards.are_asked();
         if asks_for_studies && experiment.simulated().is_none() {
             let message = "a study needs the true states, which a recording does not have";
-            return Err(Unusable::report(message, "leave out --studies, or simulate"));
+            return Err(Unusable::report(Code::Option, message, "leave out --studies, or simulate"));
         }
         if asks_for_studies && experiment.scene.study.is_empty() {
             let message = "the scene has no studies";
             return Err(Unusable::report(
+                Code::Question,
                 message,
                 "add [study.noise], [study.basin] or [study.curvature] to it, or leave out --studies",
             ));
@@ -157,10 +159,10 @@ impl Observe {
                 (None, Some(motion)) => motion.table(),
                 (None, None) => {
                     let message = "a recording has no true motion";
-                    return Err(Unusable::report(message, "leave out --motion, or --data"));
+                    return Err(Unusable::report(Code::Option, message, "leave out --motion, or --data"));
                 }
             };
-            let table = table.map_err(|error| Unusable::report(error.to_string(), ""))?;
+            let table = table.map_err(|error| Unusable::report(Code::Question, error.to_string(), ""))?;
             files.table(path, &table);
             files.announce(path);
         }
@@ -211,7 +213,7 @@ impl Observe {
             note(&format!("the motion ended early: {lost}"));
         }
         // a window that cannot be seen is part of the answer; a method by windows that saw none has found nothing, and one that
-        // contradicts the readings is wrong; filters beside them are there to be compared, and where only filters were asked they have to pass their test
+        // contradicts the measurements is wrong; filters beside them are there to be compared, and where only filters were asked they have to pass their test
         let by_windows = |answer: &Answer| answer.method.is_by_windows();
         let has_windows = answers.iter().any(by_windows);
         let as_expected = answers.iter().all(|answer| match (by_windows(answer), interrupted) {
@@ -261,7 +263,8 @@ impl Observe {
             return status.map(Sharded::Done);
         }
         let all = self.shards.merge.as_ref().map_or_else(|| Ok(Vec::new()), |folder| parts.all(folder))?;
-        let merged = studies.merge(all).map_err(|why| Unusable::report(why.to_string(), NO_WHOLE))?;
+        let merged =
+            studies.merge(all).map_err(|why| Unusable::report(Code::Saved, why.to_string(), NO_WHOLE))?;
         Ok(Sharded::Merged(merged))
     }
 }
@@ -286,7 +289,7 @@ impl Observe {
                 let message = format!(
                     "with --record - the measurements are all that is printed, and nothing is observed: {name} asks for more"
                 );
-                Err(Unusable::report(message, "record to a file, or leave the other out"))
+                Err(Unusable::report(Code::Option, message, "record to a file, or leave the other out"))
             }
             _ => Ok(()),
         }
@@ -299,7 +302,7 @@ impl Observe {
         if !scene.observer.library.is_empty() && (is_stream || !scene.observer.modes.is_empty()) {
             let message = "a body is recognised by all measurements at once: not by those of a stream, and not beside modes";
             let help = "leave out [[observer.library]]; or [[observer.modes]], and put the measurements into a file first";
-            return Err(Unusable::report(message, help));
+            return Err(Unusable::report(Code::Option, message, help));
         }
         if is_stream {
             let asked = [
@@ -313,6 +316,7 @@ impl Observe {
             if let Some((name, _)) = asked.iter().find(|(_, is_asked)| *is_asked) {
                 let message = format!("{name} needs all measurements, and a stream is not kept");
                 return Err(Unusable::report(
+                    Code::Option,
                     message,
                     "put the measurements into a file first, and hand it over with --data",
                 ));
@@ -337,7 +341,7 @@ impl Observe {
         files: &mut Files,
     ) -> miette::Result<()> {
         let reconstruction = shown(answers).and_then(|answer| answer.reconstruction.as_deref());
-        let unexpected = |error: RecordError| Unusable::report(error.to_string(), "");
+        let unexpected = |error: RecordError| Unusable::report(Code::Question, error.to_string(), "");
         if let Some(path) = &self.outline {
             match reconstruction.and_then(Reconstruction::outline_table) {
                 Some(table) => files.table(path, &table.map_err(unexpected)?),

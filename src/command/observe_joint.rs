@@ -8,6 +8,7 @@ use palmistry::experiment::joint::{JointExperiments, JointScene};
 use palmistry::report::{
     JointObserved, joint_json, joint_page, joint_parameters, joint_simulation, joint_text,
 };
+use palmistry::system::Code;
 
 impl Observe {
     /// What does not go with several experiments.
@@ -25,6 +26,7 @@ impl Observe {
         ];
         match refused.iter().find(|(is_given, ..)| *is_given) {
             Some((_, option, why)) => Err(Unusable::report(
+                Code::Option,
                 format!("{option} is not for several experiments"),
                 format!("leave it out: {why}"),
             )),

@@ -9,6 +9,7 @@ use palmistry::experiment::{Experiment, Scene};
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
 use palmistry::report::{modes_json, modes_text};
+use palmistry::system::Code;
 
 impl Observe {
     /// Whether what is asked for can be had of modes.
@@ -25,7 +26,7 @@ impl Observe {
                 let message = format!(
                     "modes are reported as text or JSON, of a recording or a simulation: not with {name}"
                 );
-                Err(Unusable::report(message, "leave it out, or [[observer.modes]]"))
+                Err(Unusable::report(Code::Option, message, "leave it out, or [[observer.modes]]"))
             }
             _ => Ok(()),
         }

@@ -3,9 +3,10 @@
 use super::interrupt::{begin_to_tell, interrupted};
 use super::observe::Observe;
 use super::output::{Files, Form, progress};
-use super::slow_told::{KeptSlow, SlowTold};
+use super::slow_text::{KeptSlow, SlowTold};
 use super::{Status, Unusable};
 use palmistry::experiment::slow::{SlowExperiment, SlowScene, StudyRow, slow_study};
+use palmistry::system::Code;
 
 impl Observe {
     /// What does not go with slow motion, or not together.
@@ -18,6 +19,7 @@ impl Observe {
         if let Some((_, option)) = not_for_slow.iter().find(|(is_given, _)| *is_given) {
             let message = format!("{option} is not for slow motion");
             return Err(Unusable::report(
+                Code::Option,
                 message,
                 "leave it out; --record, --out and --json say all there is",
             ));
@@ -30,12 +32,14 @@ impl Observe {
         if let Some((_, option)) = cut.iter().find(|(is_given, _)| *is_given) {
             let message = format!("{option} is not for slow motion: its study is not cut into shards");
             return Err(Unusable::report(
+                Code::Option,
                 message,
                 "run it with --studies; fewer 'bodies' or 'samples' in [study] take less time",
             ));
         }
         if self.studies && scene.study.is_none() {
             return Err(Unusable::report(
+                Code::Question,
                 "the scene has no study",
                 "add [study] to it, or leave out --studies",
             ));
@@ -43,7 +47,7 @@ impl Observe {
         self.records_alone()
     }
 
-    /// Observes a slow scene. Its readings are explained all at once: of standard input, too, the answer comes at the end.
+    /// Observes a slow scene. Its measurements are explained all at once: of standard input, too, the answer comes at the end.
     pub(super) fn run_slow(self, mut scene: SlowScene, kept: &KeptSlow) -> miette::Result<Status> {
         scene.seed = self.seed.unwrap_or(scene.seed);
         self.slow_goes_together(&scene)?;
@@ -52,7 +56,9 @@ impl Observe {
         bar.inc(1);
         let mut files = Files::default();
         if let Some(path) = &self.record {
-            let record = experiment.record().map_err(|error| Unusable::report(error.to_string(), ""))?;
+            let record = experiment
+                .record()
+                .map_err(|error| Unusable::report(Code::Question, error.to_string(), ""))?;
             files.table(path, &record);
             files.announce(path);
         }

@@ -7,6 +7,7 @@ use super::{Status, Unusable};
 use palmistry::experiment::space::{SpaceExperiment, SpaceScene};
 use palmistry::file::note;
 use palmistry::report::{SpaceObserved, space_ended, space_json, space_page, space_surfaces, space_text};
+use palmistry::system::Code;
 
 /// Rings of the smooth surfaces that are written.
 const SURFACE_RINGS: usize = 48;
@@ -26,7 +27,7 @@ impl Observe {
         if let Some((_, option)) = refused.iter().find(|(is_given, _)| *is_given) {
             let message = format!("{option} is not for bodies in space");
             let help = "leave it out; --record, --out and --json say all there is, and no study of them is run by a scene";
-            return Err(Unusable::report(message, help));
+            return Err(Unusable::report(Code::Option, message, help));
         }
         self.records_alone()
     }
@@ -38,8 +39,10 @@ impl Observe {
         let experiment = SpaceExperiment::new(scene, self.data.as_deref())?;
         let mut files = Files::default();
         if let Some(path) = &self.record {
-            let record =
-                experiment.readings.record().map_err(|error| Unusable::report(error.to_string(), ""))?;
+            let record = experiment
+                .measurements
+                .record()
+                .map_err(|error| Unusable::report(Code::Question, error.to_string(), ""))?;
             files.table(path, &record);
             files.announce(path);
         }

@@ -1,4 +1,4 @@
-//! `palmistry observe SCENE --data -`: readings from standard input, and an answer as soon as a window is there.
+//! `palmistry observe SCENE --data -`: measurements from standard input, and an answer as soon as a window is there.
 
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
 use super::output::Form;
@@ -8,6 +8,7 @@ use palmistry::file::{self, note};
 use palmistry::report::{
     forget_seconds, stream_end_json, stream_end_text, stream_json, stream_text, versioned,
 };
+use palmistry::system::Code;
 use serde_json::Value;
 use std::io::{ErrorKind, Read};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
@@ -61,14 +62,14 @@ pub(super) fn observe(scene: Scene, form: Form, no_times: bool) -> miette::Resul
     });
     if let Some(error) = unwritten {
         let help = "nothing of what was found is kept: free some space, or send it elsewhere";
-        return Err(Unusable::report(format!("cannot write to standard output: {error}"), help));
+        return Err(Unusable::report(Code::Place, format!("cannot write to standard output: {error}"), help));
     }
     if let Some(why) = &end.cut_off {
         note(&format!("cut off: {why}; {} windows are answered", end.windows));
     }
     if let Some(fault) = end.fault {
         let help = "mend the rows, or let faulty rows be skipped (on_fault = \"skip\" in the scene)";
-        note(&format!("{:?}", Unusable::report(fault, help)));
+        note(&format!("{:?}", Unusable::report(Code::Question, fault, help)));
         return Ok(Status::Unusable);
     }
     Ok(match (end.is_sound(), &end.cut_off) {
@@ -99,6 +100,7 @@ fn standard_input() -> miette::Result<Receiver<StreamPiece>> {
     match thread {
         Ok(_) => Ok(pieces),
         Err(error) => Err(Unusable::report(
+            Code::System,
             format!("the system gives no thread to read on: {error}"),
             "end other programs first",
         )),

@@ -3,9 +3,11 @@
 use super::{Status, Unusable};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use miette::Report;
+use palmistry::experiment::Scene;
 use palmistry::foreign::{json_text, name_of, shown_path};
 use palmistry::observer::Record;
 use palmistry::report::{read_error_json, versioned};
+use palmistry::system::Code;
 use palmistry::{ReadError, file};
 use serde_json::{Value, json};
 use std::io::Write;
@@ -30,7 +32,7 @@ pub(crate) fn print_json(object: &Value) -> miette::Result<()> {
 pub(crate) fn print_text(text: &str) -> miette::Result<()> {
     file::print(&format!("{text}\n")).map_err(|error| {
         let help = "nothing of what was found is kept: free some space, or send it elsewhere";
-        Unusable::report(format!("cannot write to standard output: {error}"), help)
+        Unusable::report(Code::Place, format!("cannot write to standard output: {error}"), help)
     })
 }
 
@@ -150,7 +152,7 @@ impl Files {
     /// Says on standard error what could not be written.
     pub fn note_failures(&self) {
         for failure in &self.failures {
-            file::note(&format!("{:?}", Unusable::report(failure.why.clone(), failure.help)));
+            file::note(&format!("{:?}", Unusable::report(Code::Place, failure.why.clone(), failure.help)));
         }
     }
 }
@@ -172,7 +174,12 @@ impl Form {
 /// An error as JSON, with the place where it points into a file.
 pub(crate) fn error_json(report: &Report) -> Value {
     let mut error = json!({ "message": report.to_string() });
-    if let Some(help) = report.help() {
+    if let Some(unusable) = report.downcast_ref::<Unusable>() {
+        error["code"] = json!(unusable.code.id());
+        if !unusable.help.is_empty() {
+            error["help"] = json!(unusable.help);
+        }
+    } else if let Some(help) = report.help() {
         error["help"] = json!(help.to_string());
     }
     if let Some(read) = report.downcast_ref::<ReadError>() {
@@ -186,7 +193,7 @@ pub(crate) fn usage_json(text: &str) -> Value {
     let (message, rest) = text.split_once('\n').unwrap_or((text, ""));
     let message = message.strip_prefix("error: ").unwrap_or(message);
     let help = rest.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join("\n");
-    json!({ "error": { "message": message, "help": help } })
+    json!({ "error": { "message": message, "code": Code::Option.id(), "help": help } })
 }
 
 /// A progress bar on standard error, shown only where that is a terminal.
@@ -220,17 +227,27 @@ pub(crate) fn fraction_bar(what: &'static str) -> ProgressBar {
     bar
 }
 
+/// Reads a scene of planar motion. Keys under a name that they had before are read as well, with a note.
+pub(crate) fn read_scene(path: &Path) -> miette::Result<Scene> {
+    let scene = Scene::read(path)?;
+    for (old, new) in scene.old_keys() {
+        file::note(&format!("note: {}: the key '{old}' is called '{new}' now", shown_path(path)));
+    }
+    Ok(scene)
+}
+
 /// All proof files that the paths name: files as they are, folders with everything below them, in order of name.
 pub(crate) fn proof_files(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for path in paths {
         if path.is_dir() {
             let before = files.len();
-            collect(path, &mut files)
-                .map_err(|e| Unusable::report(format!("cannot read {}: {e}", shown_path(path)), ""))?;
+            collect(path, &mut files).map_err(|e| {
+                Unusable::report(Code::File, format!("cannot read {}: {e}", shown_path(path)), "")
+            })?;
             if files.len() == before {
                 let message = format!("there is no .proof file below {}", shown_path(path));
-                return Err(Unusable::report(message, "name a file, or a folder that has some"));
+                return Err(Unusable::report(Code::File, message, "name a file, or a folder that has some"));
             }
         } else {
             files.push(path.clone());

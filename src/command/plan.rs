@@ -2,15 +2,16 @@
 
 use super::derived::{decided, import_path};
 use super::interrupt::INTERRUPTED;
-use super::output::{Files, Form};
+use super::output::{Files, Form, read_scene};
 use super::{Status, Unusable};
 use clap::Args;
+use palmistry::experiment::Experiment;
 use palmistry::experiment::joint::JointScene;
 use palmistry::experiment::slow::SlowScene;
 use palmistry::experiment::space::SpaceScene;
-use palmistry::experiment::{Experiment, Scene};
 use palmistry::foreign::name_of;
 use palmistry::report::{plan_json, plan_text};
+use palmistry::system::Code;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -51,11 +52,11 @@ pub(crate) struct Plan {
 impl Plan {
     pub fn run(self) -> miette::Result<Status> {
         self.has_one_model()?;
-        let mut scene = Scene::read(&self.scene)?;
+        let mut scene = read_scene(&self.scene)?;
         scene.seed = self.seed.unwrap_or(scene.seed);
         if self.data.as_deref().or(scene.data.record.as_deref()) == Some(Path::new("-")) {
             let help = "name a file: what never changes is known when all of it is there";
-            return Err(Unusable::report("a plan is not made of standard input", help));
+            return Err(Unusable::report(Code::Option, "a plan is not made of standard input", help));
         }
         let model = PathBuf::from(&scene.model);
         let experiment = Experiment::new(scene, self.data.as_deref())?;
@@ -70,7 +71,9 @@ impl Plan {
                 least.text.replacen(&format!("\"{}\"", name_of(&whole)), &format!("\"{import}\""), 1);
             let place = out.unwrap_or(Path::new("least.proof"));
             outcomes = decided(&least.text, &import, &model, place)
-                .map_err(|why| Unusable::report(format!("the least model is not written: {why}"), ""))?
+                .map_err(|why| {
+                    Unusable::report(Code::Question, format!("the least model is not written: {why}"), "")
+                })?
                 .1;
             if let Some(out) = out {
                 files.text(out, &least.text);
@@ -79,6 +82,7 @@ impl Plan {
         } else if out.is_some() {
             let why = plan.least.as_ref().err().cloned().unwrap_or_default();
             return Err(Unusable::report(
+                Code::Option,
                 format!("there is no least model to be written: {why}"),
                 "leave out --out",
             ));
@@ -109,6 +113,10 @@ impl Plan {
         } else {
             return Ok(());
         };
-        Err(Unusable::report(format!("{}: of {kind} no least model is made", name_of(&self.scene)), help))
+        Err(Unusable::report(
+            Code::Question,
+            format!("{}: of {kind} no least model is made", name_of(&self.scene)),
+            help,
+        ))
     }
 }

@@ -1,15 +1,15 @@
 //! `palmistry poses`: the surface of stable poses of a body between slow palms.
 
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, nothing_found, watched};
-use super::output::{Files, Form, progress};
+use super::output::{Files, Form, progress, read_scene};
 use super::{Status, Unusable};
 use clap::{Args, ValueEnum};
-use palmistry::experiment::Scene;
 use palmistry::pose_surface::{
     BodyFamily, ConjectureFinding, ConjectureQuestion, PalmPair, PoseBody, PoseLimits, PoseQuestion,
     conjecture, numbers, survey_poses,
 };
 use palmistry::report::{conjecture_json, conjecture_text, poses_json, poses_page, poses_text};
+use palmistry::system::Code;
 use serde_json::json;
 use std::f64::consts::PI;
 use std::path::PathBuf;
@@ -101,16 +101,17 @@ enum Family {
 const NODES: usize = 100;
 
 fn list(option: &str, text: &str) -> miette::Result<Vec<f64>> {
-    numbers(text)
-        .map_err(|why| Unusable::report(format!("{option}: {why}"), "write numbers with commas between them"))
+    numbers(text).map_err(|why| {
+        Unusable::report(Code::Option, format!("{option}: {why}"), "write numbers with commas between them")
+    })
 }
 
 fn pair(option: &str, text: &str) -> miette::Result<[f64; 2]> {
     let found = list(option, text)?;
     let count = found.len();
-    found
-        .try_into()
-        .map_err(|_| Unusable::report(format!("{option} takes two numbers, and {count} are given"), ""))
+    found.try_into().map_err(|_| {
+        Unusable::report(Code::Option, format!("{option} takes two numbers, and {count} are given"), "")
+    })
 }
 
 fn margin_in_range(option: &str, margin: f64) -> miette::Result<f64> {
@@ -118,7 +119,11 @@ fn margin_in_range(option: &str, margin: f64) -> miette::Result<f64> {
         return Ok(margin);
     }
     let help = "three times the margin has to be less than pi: take one between 0.001 and 1";
-    Err(Unusable::report(format!("{option}: at a margin of {margin} rad there are no palm angles"), help))
+    Err(Unusable::report(
+        Code::Option,
+        format!("{option}: at a margin of {margin} rad there are no palm angles"),
+        help,
+    ))
 }
 
 impl Poses {
@@ -127,7 +132,11 @@ impl Poses {
         margins.iter().try_for_each(|margin| margin_in_range("--margins", *margin).map(drop))?;
         let pad = self.pad.as_deref().map(|text| pair("--pad", text)).transpose()?;
         if !(0.0..1.0).contains(&self.tolerance) {
-            return Err(Unusable::report(format!("--tolerance is {} rad; give 0 to 1", self.tolerance), ""));
+            return Err(Unusable::report(
+                Code::Option,
+                format!("--tolerance is {} rad; give 0 to 1", self.tolerance),
+                "",
+            ));
         }
         let limits =
             PoseLimits { margin: margin_in_range("--margin", self.margin)?, pad, tolerance: self.tolerance };
@@ -152,16 +161,17 @@ impl Poses {
 
     fn body(&self) -> miette::Result<PoseBody> {
         if let Some(path) = &self.scene {
-            let scene = Scene::read(path)?;
+            let scene = read_scene(path)?;
             return Ok(scene.pose_body()?);
         }
         let Some(shape) = &self.shape else {
             let help = "name a scene, or a body as in --shape spline:1.2,1.7,1.3, or ask for random ones with --bodies 100";
-            return Err(Unusable::report("no body is given", help));
+            return Err(Unusable::report(Code::Option, "no body is given", help));
         };
         let centre = self.centre.as_deref().map(|text| pair("--centre", text)).transpose()?;
         PoseBody::parse(shape, centre).map_err(|why| {
             Unusable::report(
+                Code::Option,
                 format!("--shape {shape}: {why}"),
                 "for example spline:1.2,1.7,1.3 or harmonics:1,0.1,0",
             )
@@ -174,7 +184,11 @@ impl Poses {
         let palms = PalmPair::new(phi1, phi2);
         if palms.margin() <= 0.0 {
             let help = "both push where phi1 > 0, phi2 > 0 and phi1 + phi2 < pi";
-            return Err(Unusable::report(format!("--palms {}: not both palms push there", self.palms), help));
+            return Err(Unusable::report(
+                Code::Option,
+                format!("--palms {}: not both palms push there", self.palms),
+                help,
+            ));
         }
         let turn = self.turn.as_deref().map(|text| pair("--turn", text)).transpose()?;
         let question = PoseQuestion {

@@ -21,6 +21,7 @@ use palmistry::sweep::{
     AccessibilityAnswer, GenericOnBranch, GlobalAnswer, MOST_DIGITS, RankError, RankPart, RankPreparation,
     SolutionsWanted, StateRow, StateTable, answer_accessibility_telling, answer_solutions_telling, shard_of,
 };
+use palmistry::system::Code;
 use palmistry::{RankQuestion, System};
 use serde_json::json;
 use std::cell::RefCell;
@@ -197,7 +198,7 @@ impl Rank {
             Err(Ended::CutOff(why)) => {
                 let known = last.into_inner();
                 if matches!(known, SoFar::Nothing) {
-                    return Err(Unusable::report(why, "nothing was found before"));
+                    return Err(Unusable::report(Code::Question, why, "nothing was found before"));
                 }
                 begin_to_tell();
                 if !matches!(known, SoFar::Rank(..)) {
@@ -274,7 +275,7 @@ impl Rank {
         let answer = prepared.answer(system, parts);
         bar.finish_and_clear();
         let mut answer = answer.map_err(|why| match why {
-            RankError::Merge(_) => Unusable::report(why.to_string(), NO_WHOLE).into(),
+            RankError::Merge(_) => Unusable::report(Code::Saved, why.to_string(), NO_WHOLE).into(),
             _ => Ended::from(why),
         })?;
         if self.no_times {
@@ -314,10 +315,10 @@ impl Rank {
         states: Range<u64>,
         files: &mut Files,
     ) -> miette::Result<RankPart> {
-        let unusable = |why: RankError| Unusable::report(why.to_string(), "");
+        let unusable = |why: RankError| Unusable::report(Code::Question, why.to_string(), "");
         let Some(path) = &self.table else { return prepared.sweep(system, states).map_err(unusable) };
-        let form =
-            TableForm::of(path).map_err(|why| Unusable::report(why, "as in --table states.parquet"))?;
+        let form = TableForm::of(path)
+            .map_err(|why| Unusable::report(Code::Option, why, "as in --table states.parquet"))?;
         let coordinates = if self.coordinates { prepared.coordinates() } else { Vec::new() };
         let names: Vec<String> =
             coordinates.iter().map(|symbol| system.symbol_name(*symbol).to_owned()).collect();
@@ -364,7 +365,7 @@ impl Rank {
     fn tell_where(&self, system: &mut System, known: &dyn Fn(SoFar)) -> miette::Result<Status> {
         let mut tell = |answer| known(SoFar::Drops(Box::new(answer)));
         let answer = where_it_drops_telling(system, self.seed, &INTERRUPTED, &mut tell)
-            .map_err(|why| Unusable::report(why, ""))?;
+            .map_err(|why| Unusable::report(Code::Question, why, ""))?;
         begin_to_tell();
         let status = if answer.is_exact() { Status::AsExpected } else { Status::CutOff };
         let (mut files, object) = (Files::default(), drops_json(&answer));
@@ -389,7 +390,7 @@ impl From<RankError> for Ended {
     fn from(why: RankError) -> Ended {
         match why {
             RankError::CutOff(_) => Ended::CutOff(why.to_string()),
-            _ => Ended::Unusable(Unusable::report(why.to_string(), "")),
+            _ => Ended::Unusable(Unusable::report(Code::Question, why.to_string(), "")),
         }
     }
 }
@@ -397,7 +398,7 @@ impl From<RankError> for Ended {
 impl From<Ended> for Report {
     fn from(why: Ended) -> Report {
         match why {
-            Ended::CutOff(why) => Unusable::report(why, ""),
+            Ended::CutOff(why) => Unusable::report(Code::Question, why, ""),
             Ended::Unusable(why) => why,
         }
     }

@@ -8,6 +8,7 @@ use palmistry::checker::{Checking, Effort, Finding, LARGEST_FILE, ProofSources, 
 use palmistry::file::read_text;
 use palmistry::foreign::{shown, shown_path};
 use palmistry::report::{has_failed, recheck_json, recheck_text};
+use palmistry::system::Code;
 use std::path::PathBuf;
 
 /// Checks a file of verdicts that 'prove', 'rank' or 'certify' wrote with '--verdicts', against the proof files that it names.
@@ -36,7 +37,8 @@ pub(crate) struct Recheck {
 
 impl Recheck {
     pub fn run(self) -> miette::Result<Status> {
-        let unusable = |why: String| Unusable::report(format!("{}: {why}", shown_path(&self.file)), "");
+        let unusable =
+            |why: String| Unusable::report(Code::Saved, format!("{}: {why}", shown_path(&self.file)), "");
         let text = read_text(&self.file, LARGEST_FILE).map_err(|why| unusable(why.to_string()))?;
         let file = VerdictFile::read(&text).map_err(|why| unusable(why.to_string()))?;
         drop(text);
@@ -57,6 +59,7 @@ impl Recheck {
             .collect();
         if let Some(why) = missing.as_deref().and_then(<[_]>::first) {
             return Err(Unusable::report(
+                Code::Saved,
                 format!(
                     "{}: no proof file that it names can be read: {}",
                     shown_path(&self.file),

@@ -9,7 +9,7 @@ use palmistry::foreign::name_of;
 use palmistry::observability::{Ceiling, generic_answer};
 use palmistry::reduction::{NotReduced, ReduceQuestion, reduce};
 use palmistry::report::{least_json, least_text};
-use palmistry::system::{Assignment, given_number};
+use palmistry::system::{Assignment, Code, given_number};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -63,11 +63,13 @@ impl Reduce {
         let is_printed = self.out.as_ref().is_none_or(|out| out.as_os_str() == "-");
         let out = self.out.as_deref().filter(|_| !is_printed);
         let import = import_path(&self.file, out);
-        let least = reduce(&system, &question, &import)
-            .map_err(|why| Unusable::report(format!("{}: {why}", name_of(&self.file)), help(&why)))?;
+        let least = reduce(&system, &question, &import).map_err(|why| {
+            Unusable::report(Code::Question, format!("{}: {why}", name_of(&self.file)), help(&why))
+        })?;
         let place = out.unwrap_or(Path::new("least.proof"));
-        let (smaller, outcomes) = decided(&least.text, &import, &self.file, place)
-            .map_err(|why| Unusable::report(format!("the least model is not written: {why}"), ""))?;
+        let (smaller, outcomes) = decided(&least.text, &import, &self.file, place).map_err(|why| {
+            Unusable::report(Code::Question, format!("the least model is not written: {why}"), "")
+        })?;
         // of tied signals the rank is that of a branch, which 'rank' looks for
         let rank = smaller
             .zero_outputs()
@@ -100,7 +102,11 @@ impl Reduce {
             None => Ok((one, None)),
             Some((name, value)) => {
                 let value = given_number(value.trim()).map_err(|why| {
-                    Unusable::report(format!("--known {one}: {why}"), "write a number, as in --known rho=0.5")
+                    Unusable::report(
+                        Code::Option,
+                        format!("--known {one}: {why}"),
+                        "write a number, as in --known rho=0.5",
+                    )
                 })?;
                 Ok((name.trim().to_owned(), Some(value)))
             }
@@ -108,6 +114,7 @@ impl Reduce {
         let driven = list(&self.drive).into_iter().map(|one| match one.split_once('=') {
             Some((field, symbol)) => Ok((field.trim().to_owned(), symbol.trim().to_owned())),
             None => Err(Unusable::report(
+                Code::Option,
                 format!("--drive {one}: what drives it is missing"),
                 "write --drive g1=tau1, or --undriven g1 where nothing does",
             )),

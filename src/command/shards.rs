@@ -7,6 +7,7 @@ use clap::Args;
 use miette::Report;
 use palmistry::file::{note, read_head, read_text};
 use palmistry::foreign::{name_of, shown_path};
+use palmistry::system::Code;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -145,7 +146,7 @@ impl<T> Parts<'_, T> {
         let [folder, of] = asked else { return Ok(Status::AsExpected) };
         let of = count(of).ok_or_else(|| {
             let message = format!("'{of}' is no number of shards");
-            Unusable::report(message, "as in --missing parts 64")
+            Unusable::report(Code::Option, message, "as in --missing parts 64")
         })?;
         let mut missing = Vec::new();
         for number in 1..=of {
@@ -205,7 +206,7 @@ impl<T> Parts<'_, T> {
     pub fn all(&self, folder: &Path) -> miette::Result<Vec<(String, T)>> {
         let cannot = |why: std::io::Error| {
             let message = format!("cannot read {}: {why}", shown_path(folder));
-            Unusable::report(message, "name the folder into which '--part' wrote")
+            Unusable::report(Code::Saved, message, "name the folder into which '--part' wrote")
         };
         let mut paths = Vec::new();
         for entry in std::fs::read_dir(folder).map_err(cannot)? {
@@ -227,7 +228,11 @@ impl<T> Parts<'_, T> {
                 PartStanding::Missing => {}
                 PartStanding::Damaged(why) => {
                     let message = format!("{}: {why}", shown_path(&path));
-                    return Err(Unusable::report(message, "do its shard again, which writes it anew"));
+                    return Err(Unusable::report(
+                        Code::Saved,
+                        message,
+                        "do its shard again, which writes it anew",
+                    ));
                 }
             }
         }
@@ -238,7 +243,11 @@ impl<T> Parts<'_, T> {
                 self.extension,
                 shown_path(folder)
             );
-            return Err(Unusable::report(message, "do the shards first, with --shard and --part"));
+            return Err(Unusable::report(
+                Code::Saved,
+                message,
+                "do the shards first, with --shard and --part",
+            ));
         }
         Ok(parts)
     }
@@ -249,7 +258,7 @@ fn of_another(path: &Path) -> Report {
         "{} belongs to another question: another file, other options, or another version of this program",
         shown_path(path)
     );
-    Unusable::report(message, ANOTHER)
+    Unusable::report(Code::Saved, message, ANOTHER)
 }
 
 /// What can be done about parts that are no whole.

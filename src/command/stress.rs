@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum};
 use palmistry::System;
 use palmistry::paper::Paper;
 use palmistry::report::{stress_json, stress_pictures, stress_text};
+use palmistry::system::Code;
 use palmistry::tradeoff::LandscapeRows;
 use palmistry::tradeoff::stress::{Stress as Prepared, StressOptions, StressStudy};
 use serde_json::json;
@@ -109,7 +110,7 @@ impl Stress {
         let mut prepared = Vec::new();
         for system in &mut systems {
             let one = Prepared::of_file(system, rows, &options);
-            let named = |why: String| Unusable::report(format!("{}: {why}", system.name), "");
+            let named = |why: String| Unusable::report(Code::Question, format!("{}: {why}", system.name), "");
             prepared.push(one.map_err(named)?);
         }
         bar.set_length(prepared.iter().map(|one| one.steps(&options)).sum());

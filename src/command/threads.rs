@@ -2,6 +2,7 @@
 
 use super::Unusable;
 use super::interrupt::STACK;
+use palmistry::system::Code;
 
 /// The variable that says how many.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
@@ -20,6 +21,7 @@ pub(crate) fn prepare() -> miette::Result<()> {
     }
     pool.build_global().map_err(|error| {
         Unusable::report(
+            Code::System,
             format!("the system gives no threads to work on: {error}"),
             format!("end other programs first, or ask for fewer with {VARIABLE}"),
         )

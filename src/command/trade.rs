@@ -6,6 +6,7 @@ use super::{Status, Unusable};
 use clap::Args;
 use palmistry::System;
 use palmistry::report::{trade_json, trade_plot, trade_text};
+use palmistry::system::Code;
 use palmistry::tradeoff::{TradeQuestion, trade};
 use std::path::PathBuf;
 
@@ -56,7 +57,7 @@ impl Trade {
             },
         );
         bar.finish_and_clear();
-        let found = found.map_err(|why| Unusable::report(why, ""))?;
+        let found = found.map_err(|why| Unusable::report(Code::Question, why, ""))?;
         begin_to_tell();
         let json = trade_json(&found);
         let mut files = Files::default();

@@ -12,6 +12,7 @@ use palmistry::paper::{Findings, MANIFEST, Paper, VerifyOptions, verify_into};
 use palmistry::report::{
     errata_markdown, findings_json, findings_text, forget_seconds, forget_times, page_with, versioned,
 };
+use palmistry::system::Code;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -147,7 +148,7 @@ pub(crate) fn packed_paper(name: Option<&str>) -> miette::Result<PathBuf> {
         Some(found) => Ok(Path::new(&format!("{}{found}", file::PACKED)).to_owned()),
         None => {
             let message = format!("no paper '{}' came with this program", name.unwrap_or_default());
-            Err(Unusable::report(message, format!("there are: {}", all.join(", "))))
+            Err(Unusable::report(Code::Option, message, format!("there are: {}", all.join(", "))))
         }
     }
 }

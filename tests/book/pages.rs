@@ -174,6 +174,11 @@ impl Page<'_> {
     /// Commands, each with its output.
     fn console(&mut self, block: &Block) {
         let (mut now, mut all_like) = (String::new(), true);
+        if let Some(code) = block.value("refused")
+            && !block.text.contains(&format!("'palmistry explain {code}'"))
+        {
+            self.wrong(block, format!("no message with {code} is shown"));
+        }
         for shown in commands(&block.text) {
             let output = self.run(block, &shown.command);
             let lines: Vec<&str> = output.lines().map(str::trim_end).collect();

@@ -269,10 +269,10 @@ fn a_value_in_a_file_is_never_part_of_a_claim() {
     assert!(shown.contains("at the file's values k = 0, m = 2.5 it is refuted"), "{shown}");
     let found = json(&palmistry(&["rank", file, "--samples", "10", "--json"]));
     assert_eq!(found["rank_histogram"], serde_json::json!({ "1": 10 }));
-    assert_eq!(found["held_at_the_files_values"], serde_json::json!({ "k": "0", "m": "2.5" }));
+    assert_eq!(found["fixed_at_the_files_values"], serde_json::json!({ "k": "0", "m": "2.5" }));
     let found = json(&palmistry(&["rank", file, "--samples", "10", "--at", "k=1", "--json"]));
     assert_eq!(found["rank_histogram"], serde_json::json!({ "2": 10 }));
-    assert_eq!(found["held_at_the_files_values"], serde_json::json!({ "m": "2.5" }));
+    assert_eq!(found["fixed_at_the_files_values"], serde_json::json!({ "m": "2.5" }));
     let shown = String::from_utf8(palmistry(&["rank", file, "--samples", "10"]).stdout).unwrap();
     assert!(shown.contains("fixed at the values in the file: k = 0, m = 2.5"), "{shown}");
 }

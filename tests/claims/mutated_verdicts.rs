@@ -287,7 +287,7 @@ fn fewer_rows(record: &Value, kept: usize) -> Option<Value> {
         _ => return None,
     };
     let width = rank["columns"].as_array()?.len();
-    for name in ["rows", "words"] {
+    for name in ["rows", "row_names"] {
         let list = rank[name].as_array_mut()?;
         list.truncate(kept);
     }
@@ -357,7 +357,7 @@ fn mutants(honest: &[Value]) -> Vec<Mutant> {
 /// Certificates with the digest that fits.
 fn sealed(record: &mut Value) {
     let file =
-        json!({"schema": "palmistry-verdicts", "version": 3, "tool": "", "seed": 1, "verdicts": [record]});
+        json!({"schema": "palmistry-verdicts", "version": 4, "tool": "", "seed": 1, "verdicts": [record]});
     if let Ok(file) = VerdictFile::read(&file.to_string())
         && let Evidence::Boxes(boxes) = &file.verdicts[0].evidence
     {
@@ -374,7 +374,7 @@ fn no_verdict_that_turned_false_is_confirmed() {
     let sources = ProofSources::given(systems);
     let never = false.into();
     let word = |record: &Value| {
-        let file = json!({"schema": "palmistry-verdicts", "version": 3, "tool": "", "seed": 1, "verdicts": [record]});
+        let file = json!({"schema": "palmistry-verdicts", "version": 4, "tool": "", "seed": 1, "verdicts": [record]});
         let Ok(file) = VerdictFile::read(&file.to_string()) else { return "not read" };
         let effort = Effort::new(1 << 24);
         file.check(Checking { sources: &sources, seed: 1, effort: &effort, interrupt: &never }, &|| ())[0]

@@ -11,7 +11,7 @@ fn file(evidence: Value) -> Value {
     let asked = json!({"what": "equation", "claimed": "", "sense": "always", "where": "", "except": ""});
     let verdict = json!({"file": "by hand", "digest": "", "id": "1", "statement": "", "asked": asked, "verdict": "found",
         "evidence": evidence});
-    json!({"schema": "palmistry-verdicts", "version": 3, "tool": "by hand", "seed": 1, "verdicts": [verdict]})
+    json!({"schema": "palmistry-verdicts", "version": 4, "tool": "by hand", "seed": 1, "verdicts": [verdict]})
 }
 
 /// What the check of the evidence of a file of one verdict comes to, whatever claim it is filed under.
@@ -205,7 +205,7 @@ fn a_proof_is_tried_at_states_of_the_checkers_choice() {
 fn products(x: &str, y: &str, rank: usize, minor: Value, kernel: Value) -> Value {
     file(json!({"rank": {
         "listing": [["symbol", "x"], ["symbol", "y"], ["const", "2"], ["mul", 2, 0], ["mul", 2, 1]],
-        "columns": ["x", "y"], "words": ["x*y", "Lf x*y"], "rows": [[1, 0], [3, 4]],
+        "columns": ["x", "y"], "row_names": ["x*y", "Lf x*y"], "rows": [[1, 0], [3, 4]],
         "requirements": [{"kind": "not_negative", "step": 0}],
         "states": [{"state": {"x": number(x), "y": number(y)}, "rank": rank, "minor": minor, "kernel": kernel}],
     }}))
@@ -309,7 +309,7 @@ fn random_matrices_have_the_rank_that_they_are_made_with_and_no_other() {
         let places: Vec<usize> = (0..rank).collect();
         let certificate = |rank: usize, minor: &[usize], kernel: &[Vec<String>]| {
             file(json!({"rank": {
-                "listing": listing, "columns": vec!["x"; width], "words": vec!["w"; height], "rows": rows,
+                "listing": listing, "columns": vec!["x"; width], "row_names": vec!["w"; height], "rows": rows,
                 "requirements": [],
                 "states": [{"state": {}, "rank": rank, "minor": {"rows": minor, "columns": minor}, "kernel": kernel}],
             }}))
@@ -380,8 +380,8 @@ fn what_is_no_verdict_file_is_told_why() {
     }
     for (part, other, why) in [
         ("/schema", json!("verdicts"), "its schema is 'verdicts'"),
-        ("/version", json!(2), "verdicts were not bound to their claims"),
-        ("/version", json!(4), "its version is 4"),
+        ("/version", json!(3), "write it anew"),
+        ("/version", json!(5), "its version is 5"),
         ("/version", json!(-1), "no verdict file"),
         ("/verdicts/0/evidence", json!({"sworn": {}}), "unknown variant"),
         ("/verdicts/0/evidence/refuted/listing", json!([["symbol", ""]]), "operation 0"),
@@ -555,7 +555,7 @@ fn nothing_at_all_is_not_confirmed() {
     let none = json!({"rows": [], "columns": []});
     let mut whole = products("0", "0", 0, none, json!([["1", "0"], ["0", "1"]]));
     let rank = &mut whole["verdicts"][0]["evidence"]["rank"];
-    (rank["rows"], rank["words"]) = (json!([]), json!([]));
+    (rank["rows"], rank["row_names"]) = (json!([]), json!([]));
     assert_eq!(check(&whole), Finding::NotConfirmed(Doubt::NoRows));
     assert_eq!(check(&whole).word(), "not checked");
     whole["verdicts"][0]["evidence"]["rank"]["states"] = json!([]);
@@ -621,7 +621,7 @@ fn ranks_at_states_that_the_file_excludes() {
         });
         let rank = &mut found["verdicts"][0]["evidence"]["rank"];
         rank["listing"] = json!([["symbol", "z"], ["symbol", "k"], ["mul", 1, 0]]);
-        (rank["rows"], rank["words"], rank["states"]) = (json!([[2]]), json!(["k*z*x"]), json!([state]));
+        (rank["rows"], rank["row_names"], rank["states"]) = (json!([[2]]), json!(["k*z*x"]), json!([state]));
         std::fs::write(&path, found.to_string()).unwrap();
         let checked = palmistry(&["recheck", verdicts]);
         (checked.status.code(), String::from_utf8_lossy(&checked.stdout).into_owned())

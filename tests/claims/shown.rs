@@ -41,14 +41,14 @@ fn models_by_hand_are_shown_as_they_are() {
     let (mut shown, mut all) = (0, 0);
     for (model, seen, unobservable) in MODELS {
         let functions = seen.iter().map(|one| (one, true)).chain(unobservable.iter().map(|one| (one, false)));
-        for (function, is_seen) in functions {
+        for (function, is_observable) in functions {
             let (function, conditions) = function.split_once(" where ").unwrap_or((function, ""));
             let given = if conditions.is_empty() { String::new() } else { format!(" where {conditions}") };
             let claims = ["observable", "unobservable"].map(|word| format!("{word}({function}){given}"));
             let found = proved_and_shown(model, &claims);
-            let contrary = found[usize::from(is_seen)];
+            let contrary = found[usize::from(is_observable)];
             assert!(!contrary.0 && !contrary.1, "{model}: {claims:?} {found:?}");
-            shown += usize::from(found[usize::from(!is_seen)].1);
+            shown += usize::from(found[usize::from(!is_observable)].1);
             all += 1;
         }
     }

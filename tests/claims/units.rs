@@ -166,7 +166,7 @@ proptest! {
                             (decide(&case, rows, state, wanted), decide(&case, rows, &other, wanted));
                         prop_assert_eq!(here.rank, there.rank);
                         prop_assert_eq!(here.certainty, there.certainty);
-                        prop_assert_eq!(here.rung, there.rung);
+                        prop_assert_eq!(here.number_type, there.number_type);
                         prop_assert_eq!(here.computed, there.computed);
                     }
                 }

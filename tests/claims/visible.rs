@@ -162,7 +162,7 @@ fn an_output_that_is_seen_adds_no_rank() {
             continue; // there derivatives of the function tell more than itself
         }
         let functions = seen.iter().map(|one| (one, true)).chain(unobservable.iter().map(|one| (one, false)));
-        for (function, is_seen) in functions.filter(|(function, _)| !function.contains("where")) {
+        for (function, is_observable) in functions.filter(|(function, _)| !function.contains("where")) {
             let rank = |model: &str| {
                 let claims: Vec<String> = (0..8).map(|n| format!("rank = {n}")).collect();
                 words(model, &claims).iter().position(|word| *word == "proved")
@@ -170,7 +170,7 @@ fn an_output_that_is_seen_adds_no_rank() {
             let with_it = model.replacen(" output ", &format!(" output {function}, "), 1);
             let (rank, with_it) = (rank(model), rank(&with_it));
             assert!(rank.is_some(), "{model}");
-            assert_eq!(rank == with_it, is_seen, "{function} of {model}: {rank:?}, {with_it:?}");
+            assert_eq!(rank == with_it, is_observable, "{function} of {model}: {rank:?}, {with_it:?}");
         }
     }
 }

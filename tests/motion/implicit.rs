@@ -1,4 +1,4 @@
-//! Implicit outputs in observers: equations that tie readings to states, and are read themselves nowhere.
+//! Implicit outputs in observers: equations that tie measurements to states, and are read themselves nowhere.
 
 use palmistry::System;
 use palmistry::experiment::{Experiment, Scene};
@@ -45,7 +45,7 @@ impl Draws {
 }
 
 /// 61 samples over 1.5 s with errors of the bearing and of the speeds.
-fn readings(seed: u64, errors: [f64; 2], gain: f64) -> Signals {
+fn measurements(seed: u64, errors: [f64; 2], gain: f64) -> Signals {
     let mut draws = Draws::new(seed);
     let times: Vec<f64> = (0..61).map(|i| 0.025 * f64::from(i)).collect();
     let mut columns = [Vec::new(), Vec::new(), Vec::new()];
@@ -85,10 +85,10 @@ fn window() -> MovingWindow {
     MovingWindow { steps: 30, ..MovingWindow::new(60) }
 }
 
-/// Of exact readings the state comes back, with the output named as the file has it.
+/// Of exact measurements the state comes back, with the output named as the file has it.
 #[test]
 fn exact_readings_give_the_state() {
-    let (system, signals) = (system(), readings(0, [0.0; 2], 1.0));
+    let (system, signals) = (system(), measurements(0, [0.0; 2], 1.0));
     let task = task(&system, &signals, [0.0; 2]);
     assert_eq!(task.full.outputs, ["0 = u*x - y"]);
     let track = window().observe(&task);
@@ -102,9 +102,9 @@ fn exact_readings_give_the_state() {
 /// The bound is the one by hand: with speeds that are read exactly, `u x - y` has the derivatives `(u, -1)` by the first place and errs by
 /// `x` times the bearing's error.
 #[test]
-fn the_bound_is_that_of_the_readings() {
+fn the_bound_is_that_of_the_measurements() {
     let error = 1e-3;
-    let (system, signals) = (system(), readings(0, [0.0; 2], 1.0));
+    let (system, signals) = (system(), measurements(0, [0.0; 2], 1.0));
     let task = task(&system, &signals, [error, 0.0]);
     let bounds = window().bounds(&task, &TRUTH, &(0..61), &[]);
     let mut information = [[0.0; 2]; 2];
@@ -133,7 +133,7 @@ fn errors_are_as_large_as_their_bounds() {
         let (mut squares, mut fits, mut chi_squares) = ([0.0; 2], 0, 0.0);
         const SEEDS: u64 = 200;
         for seed in 0..SEEDS {
-            let signals = readings(seed, errors, 1.0);
+            let signals = measurements(seed, errors, 1.0);
             let task = task(&system, &signals, errors);
             let track = window().observe(&task);
             let update = &track.updates[0];
@@ -160,7 +160,7 @@ fn errors_are_as_large_as_their_bounds() {
 fn a_wrong_gain_does_not_fit() {
     let system = system();
     for seed in 0..20 {
-        let signals = readings(seed, [1e-4, 0.0], 1.1);
+        let signals = measurements(seed, [1e-4, 0.0], 1.1);
         let task = task(&system, &signals, [1e-4, 0.0]);
         let track = window().observe(&task);
         assert!(track.is_contradicted(), "{:?}", track.updates[0]);
@@ -170,7 +170,7 @@ fn a_wrong_gain_does_not_fit() {
 /// Filters compare outputs with what is read of them: here they say that they cannot.
 #[test]
 fn filters_refuse_in_words() {
-    let (system, signals) = (system(), readings(0, [1e-3, 0.0], 1.0));
+    let (system, signals) = (system(), measurements(0, [1e-3, 0.0], 1.0));
     let task = task(&system, &signals, [1e-3, 0.0]);
     let methods: [&dyn Observer; 3] = [&Kalman::default(), &Unscented::default(), &HighGain::default()];
     for method in methods {
@@ -185,7 +185,7 @@ fn filters_refuse_in_words() {
 fn a_recording_with_an_implicit_output() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("ship.proof"), SHIP).unwrap();
-    let signals = readings(3, [1e-3, 0.0], 1.0);
+    let signals = measurements(3, [1e-3, 0.0], 1.0);
     let mut csv = String::from("time,u,w1,w2\n");
     for (row, t) in signals.times().iter().enumerate() {
         let [u, w1, w2] = [0, 1, 2].map(|place| signals.column(place)[row]);

@@ -37,7 +37,7 @@ fn oscillator(t: f64, [x0, v0, w]: [f64; 3]) -> (f64, [f64; 3], [[f64; 3]; 3]) {
 }
 
 /// Readings of the oscillator.
-fn readings(truth: [f64; 3], samples: usize) -> Signals {
+fn measurements(truth: [f64; 3], samples: usize) -> Signals {
     let times: Vec<f64> = (0..samples).map(|i| 0.02 * i as f64).collect();
     let x = times.iter().map(|t| oscillator(*t, truth).0).collect();
     Signals::new(times, vec![("x".to_owned(), x)]).unwrap()
@@ -51,13 +51,19 @@ fn question(guess: &[(&str, f64)]) -> EstimateQuestion {
 }
 
 fn window(method: WindowSearch) -> MovingWindow {
-    MovingWindow { method, window: 50, steps: 20, blind: 1.0, when_blind: WhenUnobservable::Hold }
+    MovingWindow {
+        method,
+        window: 50,
+        steps: 20,
+        unobservable_above: 1.0,
+        when_unobservable: WhenUnobservable::Hold,
+    }
 }
 
 #[test]
 fn sensitivities_are_those_of_the_closed_form() {
     let truth = [0.7, -1.1, 2.3];
-    let signals = readings(truth, 60);
+    let signals = measurements(truth, 60);
     let question =
         ModelQuestion { followed: ["x", "v", "w"].map(str::to_owned).to_vec(), ..Default::default() };
     let model = Model::new(&system(OSCILLATOR), &question, &signals).unwrap();
@@ -98,7 +104,7 @@ fn an_input_field_drives_by_its_signal() {
 #[test]
 fn both_methods_by_windows_find_speed_and_frequency() {
     let truth = [0.7, -1.1, 2.3];
-    let signals = readings(truth, 151);
+    let signals = measurements(truth, 151);
     for method in [WindowSearch::Newton, WindowSearch::TrustRegion] {
         let task = Task::new(&system(OSCILLATOR), &question(&[("v", -1.21), ("w", 2.53)]), &signals, &NEVER)
             .unwrap();
@@ -120,7 +126,7 @@ fn both_methods_by_windows_find_speed_and_frequency() {
 #[test]
 fn newton_converges_quadratically() {
     let truth = [0.7, -1.1, 2.3];
-    let signals = readings(truth, 50);
+    let signals = measurements(truth, 50);
     let task =
         Task::new(&system(OSCILLATOR), &question(&[("v", -1.21), ("w", 2.53)]), &signals, &NEVER).unwrap();
     let error = |steps: u64| {
@@ -141,7 +147,7 @@ fn newton_converges_quadratically() {
 #[test]
 fn a_filter_ends_near_the_truth() {
     let truth = [0.7, -1.1, 2.3];
-    let signals = readings(truth, 301);
+    let signals = measurements(truth, 301);
     let task =
         Task::new(&system(OSCILLATOR), &question(&[("v", -1.0), ("w", 2.5)]), &signals, &NEVER).unwrap();
     let track = Kalman { prior: 0.1, process_noise: 1e-6, least_sigma: 1e-6 }.observe(&task);
@@ -189,11 +195,11 @@ fn what_cannot_be_told_apart_is_said_to_be_unseen() {
           others' = 0
         output x
     "#;
-    let signals = readings([0.7, -1.1, 2.0], 60);
+    let signals = measurements([0.7, -1.1, 2.0], 60);
     let task = Task::new(&system(text), &question(&[("v", -1.1), ("a", 1.0), ("b", 3.0)]), &signals, &NEVER)
         .unwrap();
     let track = window(WindowSearch::Newton).observe(&task);
-    let UpdateEnd::Blind { weakest } = &track.updates[0].end else { panic!("{:?}", track.updates[0]) };
+    let UpdateEnd::Unobservable { weakest } = &track.updates[0].end else { panic!("{:?}", track.updates[0]) };
     // the two differ against each other, in units of their sizes 1 and 3
     assert!((weakest[0]).abs() < 1e-6 && (weakest[1] + 3.0 * weakest[2]).abs() < 1e-6, "{weakest:?}");
     assert_eq!(track.updates[0].estimate, [-1.1, 1.0, 3.0]);
@@ -202,7 +208,7 @@ fn what_cannot_be_told_apart_is_said_to_be_unseen() {
 
 #[test]
 fn what_no_one_tells_is_named() {
-    let signals = readings([1.0, 0.0, 1.0], 9);
+    let signals = measurements([1.0, 0.0, 1.0], 9);
     let refused = |guess: &[(&str, f64)], text: &str| {
         Task::new(&system(text), &question(guess), &signals, &NEVER).unwrap_err().to_string()
     };

@@ -1,4 +1,4 @@
-//! Chapter 3 through readings alone: a body at rest between slow palms, and what each way makes of it.
+//! Chapter 3 through measurements alone: a body at rest between slow palms, and what each way makes of it.
 
 use crate::common::{folder, json, palmistry, write};
 use palmistry::experiment::slow::{SlowAnswers, SlowExperiment, SlowScene, ThesisMethod, by_thesis, votes};
@@ -22,7 +22,7 @@ fn run(experiment: &SlowExperiment) -> SlowAnswers {
     experiment.run(&|| false, &|_| ())
 }
 
-/// Exact readings tell the body to rounding with nothing known; quadrature from the true height is exact to its order, the thesis's way to its.
+/// Exact measurements tell the body to rounding with nothing known; quadrature from the true height is exact to its order, the thesis's way to its.
 #[test]
 fn exact_readings_tell_the_body() {
     let experiment = experiment(&scene(160, BODY, PLAN, ""));
@@ -46,7 +46,7 @@ fn exact_readings_tell_the_body() {
     assert!(thesis.radius > 10.0 * fine.radius, "{thesis:?} {fine:?}");
     // the true height is told by more zeros than any other
     let height = experiment.truth.as_ref().unwrap().trajectory.moments[0].centre[1];
-    let most = votes(&experiment.readings)[0];
+    let most = votes(&experiment.measurements)[0];
     assert!(most.votes >= 3 && (most.height - height).abs() < 2e-2, "{most:?} {height}");
 }
 
@@ -57,10 +57,10 @@ fn the_thesis_way_meets_a_pole_and_is_blind_to_the_height() {
     let experiment = experiment(&scene(2000, BODY, PLAN, ""));
     let first = &experiment.truth.as_ref().unwrap().trajectory.moments[0];
     let right =
-        by_thesis(&experiment.readings, first.palms.map(|palm| palm.r), ThesisMethod::PredictorCorrector);
+        by_thesis(&experiment.measurements, first.palms.map(|palm| palm.r), ThesisMethod::PredictorCorrector);
     assert!(right.vanishing.len() >= 2, "{:?}", right.vanishing);
     for method in [ThesisMethod::Dopri5, ThesisMethod::Dop853] {
-        let stopped = by_thesis(&experiment.readings, first.palms.map(|palm| palm.r), method);
+        let stopped = by_thesis(&experiment.measurements, first.palms.map(|palm| palm.r), method);
         assert!(stopped.stopped.is_some() && stopped.track.radii.len() < 2000);
         // at a sample beside a zero of the denominator, where the numerator vanishes too: some are stepped over
         let at = stopped.track.radii.len();
@@ -72,7 +72,7 @@ fn the_thesis_way_meets_a_pole_and_is_blind_to_the_height() {
     let (phi1, phi12) = (first.palms[0].angle, first.palms[0].angle + first.palms[1].angle);
     let off = 0.01 * first.centre[1];
     let radii = [first.palms[0].r + off * phi1.cos(), first.palms[1].r - off * phi12.cos()];
-    let wrong = by_thesis(&experiment.readings, radii, ThesisMethod::PredictorCorrector);
+    let wrong = by_thesis(&experiment.measurements, radii, ThesisMethod::PredictorCorrector);
     assert!((wrong.track.height[rows] - right.track.height[rows]).abs() > 0.5 * off.abs());
     assert!(most(&wrong.contact_error, rows) < 1e-12 && most(&right.contact_error, rows) < 1e-12);
     let [blind, seen] = [&wrong, &right].map(|track| most(&track.force_error, rows));
@@ -88,7 +88,7 @@ fn a_rounded_and_jittered_sensor_tells_a_small_body() {
     let answers = run(&experiment);
     assert!(answers.explained);
     let found = answers.together.as_ref().unwrap();
-    // a resolution of 0.1 mm is an error of 0.029 mm of a reading
+    // a resolution of 0.1 mm is an error of 0.029 mm of a measurement
     assert!((found.sigma - 1e-4 / 12f64.sqrt()).abs() < 1e-12);
     let error = experiment.error(&found.track).unwrap();
     assert!(error.radius < 5e-5, "{error:?}");
@@ -161,8 +161,8 @@ fn a_paper_has_slow_scenes() {
     assert_eq!(html.matches("After ").count(), 4);
 }
 
-/// A study: in each row every way over the same bodies. Exact readings tell a body of six harmonics to rounding and quadrature falls with the samples; where the order is too low the
-/// readings are not explained, and it is said. One that ends early says so.
+/// A study: in each row every way over the same bodies. Exact measurements tell a body of six harmonics to rounding and quadrature falls with the samples; where the order is too low the
+/// measurements are not explained, and it is said. One that ends early says so.
 #[test]
 fn a_study_sets_the_ways_beside_each_other() {
     let study = "[study]\nbodies = 2\nfamilies = [\"harmonics\"]\nsamples = [60, 120]\norders = [3, 6]\n";
@@ -284,13 +284,13 @@ fn a_pad_that_is_too_short_ends_the_motion() {
 /// A recording of another program, its columns named otherwise, with nothing known: by the command.
 #[test]
 fn a_recording_with_columns_of_its_own_is_reconstructed() {
-    // so dense that no reading is taken for a spike
+    // so dense that no measurement is taken for a spike
     let experiment = experiment(&scene(480, BODY, PLAN, ""));
-    let readings = &experiment.readings;
+    let measurements = &experiment.measurements;
     let mut table = "time,lower,opening,a,b\n".to_owned();
-    for row in 0..readings.times.len() {
-        let ([phi1, phi2], [s1, s2]) = (readings.palms[row], readings.contacts[row]);
-        table += &format!("{},{phi1},{phi2},{s1},{s2}\n", readings.times[row]);
+    for row in 0..measurements.times.len() {
+        let ([phi1, phi2], [s1, s2]) = (measurements.palms[row], measurements.contacts[row]);
+        table += &format!("{},{phi1},{phi2},{s1},{s2}\n", measurements.times[row]);
     }
     let folder = folder();
     write(&folder, "run.csv", &table);

@@ -1,4 +1,4 @@
-//! Chapter 5 through readings alone: a body in space on three palms, its state, inertia, mass and shape with nothing known.
+//! Chapter 5 through measurements alone: a body in space on three palms, its state, inertia, mass and shape with nothing known.
 //!
 //! Oracle: the body that was simulated by Newton's and Euler's laws, and what is known of an ellipsoid by hand.
 
@@ -97,8 +97,8 @@ fn spheres_are_recorded() {
     let experiment = experiment(&text(89, BODY, &format!("{bent}\n{MOVED}"), "[sensor]\nnoise = 1e-4\n"));
     let folder = folder();
     let file = folder.path().join("run.csv");
-    experiment.readings.record().unwrap().write(&file).unwrap();
-    assert_eq!(SpaceMeasurements::recorded(&experiment.scene, &file).unwrap(), experiment.readings);
+    experiment.measurements.record().unwrap().write(&file).unwrap();
+    assert_eq!(SpaceMeasurements::recorded(&experiment.scene, &file).unwrap(), experiment.measurements);
     // the forces that torques and levers tell are those of the simulation, but for the noise of levers
     let truth = &experiment.truth.as_ref().unwrap().trajectory.moments;
     let solid = experiment.solid();
@@ -123,9 +123,9 @@ fn a_recording_gives_the_same() {
     let experiment = experiment(&text(89, BODY, &format!("{PALMS}\n{MOVED}"), "[sensor]\nnoise = 1e-4\n"));
     let folder = folder();
     let file = folder.path().join("run.csv");
-    experiment.readings.record().unwrap().write(&file).unwrap();
+    experiment.measurements.record().unwrap().write(&file).unwrap();
     let again = SpaceMeasurements::recorded(&experiment.scene, &file).unwrap();
-    assert_eq!(again, experiment.readings);
+    assert_eq!(again, experiment.measurements);
     // of another program, with names of its own and without rates
     let table = std::fs::read_to_string(&file).unwrap();
     let keep = |line: &str| -> String {
@@ -144,7 +144,7 @@ fn a_recording_gives_the_same() {
     assert_eq!(recorded.record.as_deref(), Some(other.as_path()));
     let told = SpaceExperiment::new(recorded, None).unwrap();
     assert!(told.truth.is_none());
-    for (own, told) in experiment.readings.palms.iter().zip(&told.readings.palms) {
+    for (own, told) in experiment.measurements.palms.iter().zip(&told.measurements.palms) {
         for (own, told) in own.iter().zip(told) {
             assert_eq!((own.angle, own.place, own.torque), (told.angle, told.place, told.torque));
             assert!((own.rate - told.rate).abs() < 1e-8, "{} {}", own.rate, told.rate);
@@ -274,13 +274,13 @@ fn a_body_that_lies_still_is_not_seen() {
     );
     let experiment = experiment(&still);
     let answers = experiment.run(&|| false, &|| ());
-    assert_eq!(answers.updates[0].verdict, SpaceVerdict::Blind);
+    assert_eq!(answers.updates[0].verdict, SpaceVerdict::Unobservable);
     assert!(answers.updates[0].state.is_none() && answers.shape.is_none());
     let folder = folder();
     let file = write(&folder, "still.toml", still);
     let run = palmistry(&["observe", file.to_str().unwrap()]);
     assert_eq!(run.status.code(), Some(1));
-    assert!(String::from_utf8_lossy(&run.stdout).contains(": blind"));
+    assert!(String::from_utf8_lossy(&run.stdout).contains(": not observable"));
 }
 
 /// What is wrong with a scene is said at its place.

@@ -408,7 +408,7 @@ fn words_of_the_range_by_differences() {
 }
 
 /// Three palms in space: every claim is proved, and at each drawn state and jet all sixteen unknowns are certainly seen, by all words
-/// and by the derivatives of the readings along one motion.
+/// and by the derivatives of the measurements along one motion.
 #[test]
 fn three_palms_tell_all_of_a_body_that_turns() {
     let found = json(&palmistry(&["prove", "proofs/moll2002/space", "--json"]));

@@ -126,7 +126,7 @@ fn rows_that_are_not_independent_are_not_confirmed() {
     let mut wrong = other.clone();
     // all three rows are written only where both minors were used: put the row in
     wrong.rows = vec![other.rows[0].clone(); 2];
-    wrong.words = vec!["row 1".to_owned(), "row 1 again".to_owned()];
+    wrong.row_names = vec!["row 1".to_owned(), "row 1 again".to_owned()];
     wrong.boxes.iter_mut().for_each(|found| found.rows = vec![0, 1]);
     assert_eq!(check(&sealed(wrong.clone())), Finding::NotConfirmed(Doubt::BoxNotShown(0)));
     wrong.boxes[0].rows = vec![0, 0];

@@ -95,7 +95,7 @@ fn designs_are_those_of_the_ranks_of_all_files() {
     let text = "state x1, x2, x3 param p1, p2, p3, p4 unknown \
                 drift f x1' = -p1*x1 + p2*x2 x2' = p3*x1 - p4*x2 x3' = p4*x1 - p2*x3 output x1";
     let told = |set: &[usize]| -> bool {
-        // inputs and known beginnings first: an output is one of all experiments
+        // inputs and known initial_values first: an output is one of all experiments
         let mut lines: Vec<&str> = set.iter().map(|place| additions[*place].1.as_str()).collect();
         lines.sort_unstable();
         let file = format!("system \"s\" {text} {}", lines.join(" "));

@@ -150,7 +150,7 @@ fn what_holds_for_the_thesis() {
                     .map(|what| on_the_set(way, what))
                     .sum::<u64>()
             };
-            assert_eq!(on_the_set("the ladder", "right"), asked("the ladder"), "{file} {title}");
+            assert_eq!(on_the_set("escalation", "right"), asked("escalation"), "{file} {title}");
             assert_eq!(on_the_set("intervals", "wrong"), 0, "{file} {title}");
             // who always says "full" is never wrong beside a set of full rank around it, and never right on a lower rank
             let full = study["dimension"].as_u64().unwrap();
@@ -170,7 +170,7 @@ fn what_holds_for_the_thesis() {
                 assert_eq!(first["states"], 1, "{file} {title}");
             }
             // the ladder climbs until it is certain, however near the set
-            let ladder = line["ways"]["the ladder"]["marks"].as_array().unwrap();
+            let ladder = line["ways"]["escalation"]["marks"].as_array().unwrap();
             assert!(ladder.iter().all(|mark| mark == "right"), "{file} {title}");
             for way in line["ways"].as_object().unwrap().values() {
                 let refused = &way["first_refused"];
@@ -178,7 +178,7 @@ fn what_holds_for_the_thesis() {
             }
         }
         for scaling in study["scalings"].as_array().unwrap() {
-            assert_eq!(scaling["ways"]["the ladder"]["right"], serde_json::json!([-150, 150]), "{file}");
+            assert_eq!(scaling["ways"]["escalation"]["right"], serde_json::json!([-150, 150]), "{file}");
             for (name, way) in scaling["ways"].as_object().unwrap() {
                 let (right, marks) = (&way["right"], way["marks"].as_array().unwrap());
                 assert!(right.is_array(), "{file} {} {name}", scaling["quantity"]);
@@ -189,7 +189,7 @@ fn what_holds_for_the_thesis() {
             }
         }
         for units in study["units"].as_array().unwrap() {
-            for way in ["intervals", "f64 with radii", "the ladder"] {
+            for way in ["intervals", "f64 with radii", "escalation"] {
                 assert_eq!(units["ways"][way]["changed"], 0, "{file} {} {way}", units["units"]);
                 assert_eq!(units["ways"][way]["wrong"], 0, "{file} {} {way}", units["units"]);
             }
@@ -293,7 +293,7 @@ fn changes_of_units_come_from_the_file() {
     assert_eq!(names[0], "the file's own");
     assert_eq!(names[1..], found.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>());
     for row in &study.units {
-        let ladder = &row.ways[Way::Ladder.place()];
+        let ladder = &row.ways[Way::Escalation.place()];
         assert_eq!((row.states > 0, ladder.wrong, ladder.changed), (true, 0, 0), "{}", row.name);
     }
     assert!(study.scalings.iter().any(|scaling| scaling.quantity == "the unit of time"));
@@ -372,7 +372,7 @@ fn every_named_set_has_its_lines() {
 fn saying_full_does_not_win() {
     let found = study(EQUAL_ROWS, false);
     let line = found.lines.iter().find(|line| matches!(&line.end, LineLimit::Ranks { .. })).unwrap();
-    let (full, ladder) = (&line.ways[Way::AlwaysFull.place()], &line.ways[Way::Ladder.place()]);
+    let (full, ladder) = (&line.ways[Way::AlwaysFull.place()], &line.ways[Way::Escalation.place()]);
     assert_eq!((&full.wrong, full.on_the_set.right), (&None, 0));
     assert!(full.on_the_set.wrong >= 10);
     assert_eq!((&ladder.wrong, ladder.on_the_set.wrong), (&None, 0));

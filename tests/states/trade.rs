@@ -145,7 +145,7 @@ fn a_short_rank_is_taken_for_full_by_noise() {
     assert_eq!((unsure.wrong, unsure.undecided), (0, 100));
 }
 
-/// Where there is no exact arithmetic the truth is an enclosure, and the exact rungs are left out for a reason. Rows that
+/// Where there is no exact arithmetic the truth is an enclosure, and the exact number types are left out for a reason. Rows that
 /// are no differentials of words leave the ways out that start from words.
 #[test]
 fn what_is_not_possible_is_said_with_its_reason() {

@@ -10,7 +10,7 @@ use palmistry::expression::Program;
 use palmistry::number::Floats;
 use palmistry::observability::{
     Codistribution, Length, NotReparametrised, UnobservableDirections, differential_by_duals, reparametrise,
-    unseen_motions,
+    unobservable_directions,
 };
 use palmistry::report::unobservable_field_text;
 use palmistry::system::Assignment;
@@ -21,8 +21,8 @@ fn found(text: &str) -> (System, UnobservableDirections) {
     let mut system: System = text.parse().expect("a system");
     let nothing = Assignment::new();
     let words = Codistribution::new(&mut system, &nothing, Length::UntilItStops).expect("words");
-    let by_words = unseen_motions(&mut system, Some(&words), &nothing, &nothing).expect("points");
-    let by_series = unseen_motions(&mut system, None, &nothing, &nothing).expect("points");
+    let by_words = unobservable_directions(&mut system, Some(&words), &nothing, &nothing).expect("points");
+    let by_series = unobservable_directions(&mut system, None, &nothing, &nothing).expect("points");
     assert_eq!(fields(&by_words), fields(&by_series));
     assert_eq!(functions(&by_words), functions(&by_series));
     assert_eq!(by_words.directions(), system.unknowns().len() - words.generic_rank());
@@ -113,7 +113,7 @@ struct Case {
 fn check(case: &Case) {
     let (system, found) = found(case.text);
     assert_eq!(fields(&found), case.fields, "{}", system.title);
-    assert_eq!(found.seen_names, case.seen, "{}", system.title);
+    assert_eq!(found.observable_names, case.seen, "{}", system.title);
     assert_eq!(functions(&found), case.functions, "{}", system.title);
     assert_eq!((found.fields_missing, found.functions_missing), (0, 0), "{}", system.title);
     assert!(found.settles_the_rank && found.for_all_parameters && !found.cut_off, "{}", system.title);
@@ -354,7 +354,7 @@ fn functions_that_are_not_rational() {
         "system \"Arrhenius\"  state x, T, A, E, c  drift f x' = -A*exp(-E/T)*x others' = 0  output c*x";
     let mut system: System = text.parse().unwrap();
     let nothing = Assignment::new();
-    let found = unseen_motions(&mut system, None, &nothing, &nothing).unwrap();
+    let found = unobservable_directions(&mut system, None, &nothing, &nothing).unwrap();
     assert_eq!(fields(&found), ["x d/dx - c d/dc", "T d/dT + E d/dE", "A d/dA + T d/dE"]);
     assert_eq!(functions(&found), ["x*c", "A*exp(-E/T)"]);
     assert!(found.settles_the_rank);
@@ -378,7 +378,7 @@ fn signals_and_constants() {
         drift f x' = -a*x + b*c*u  output x";
     let (system, found) = found(text);
     assert_eq!(fields(&found), ["b d/db - c d/dc"]);
-    assert_eq!((found.seen_names.join(" "), functions(&found)), ("x a".to_owned(), vec!["b*c"]));
+    assert_eq!((found.observable_names.join(" "), functions(&found)), ("x a".to_owned(), vec!["b*c"]));
     no_word_changes(&system, &found);
     assert_eq!(reparametrise(&system, &found, "a.proof"), Err(NotReparametrised::KnownSignals));
 }
@@ -405,10 +405,10 @@ fn sixty_unknowns() {
     text += " others' = 0  output c*x20";
     let mut system: System = text.parse().unwrap();
     let nothing = Assignment::new();
-    let found = unseen_motions(&mut system, None, &nothing, &nothing).unwrap();
+    let found = unobservable_directions(&mut system, None, &nothing, &nothing).unwrap();
     assert_eq!((found.fields.len(), found.fields_missing), (20, 0));
     assert_eq!((found.functions.len(), found.functions_missing), (21, 0));
-    assert_eq!(found.seen_names.len(), 20);
+    assert_eq!(found.observable_names.len(), 20);
     assert!(fields(&found).contains(&"x7 d/dx7 + a7 d/da7 - a8 d/da8".to_owned()));
     assert!(functions(&found).contains(&"x6*a7/x7"));
 }
@@ -446,7 +446,7 @@ fn a_value_that_hides() {
     let k = system.find_symbol("k").unwrap();
     let held = Assignment::from([(k, system.graph.integer(0))]);
     let words = Codistribution::new(&mut system, &held, Length::UntilItStops).unwrap();
-    let found = unseen_motions(&mut system, Some(&words), &held, &Assignment::new()).unwrap();
+    let found = unobservable_directions(&mut system, Some(&words), &held, &Assignment::new()).unwrap();
     assert_eq!(fields(&found), ["d/dx2", "d/dv2"]);
     assert!(!found.for_all_parameters);
     let reduced = reparametrise(&system, &found, "original.proof").unwrap();

@@ -7,7 +7,7 @@
 
 // each imports from those above it
 
-// the shape of a convex body from what was touched of it
+// the shape of a convex body from its contacts
 pub mod shape;
 
 // real bodies between real palms

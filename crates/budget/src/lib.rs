@@ -1,6 +1,6 @@
 //! What a file or a claim may make the program do, counted and not timed: the same file comes to the same end on every machine.
 //!
-//! Readers hold a [`Budget`] and are told when it is [`Spent`]. Engines are deep in each other, and most of their functions have
+//! Readers hold a [`Budget`] and get an error when it is [`Spent`]. Engines are deep in each other, and most of their functions have
 //! no way to say that they gave up: they work [within](Budget::within) a budget, and the few places where their work is done
 //! (a node is made, a program runs, polynomials are multiplied, rows are reduced) spend from the budget of the thread by
 //! [`steps`], [`nodes`] and [`bytes`]. Where it is used up the stack is unwound to [`Budget::within`], as an incremental compiler
@@ -13,7 +13,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// So much, of each.
+/// Amounts of bytes, nodes and steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Allowance {
     /// Bytes that are read, kept or written.
@@ -145,7 +145,7 @@ impl Budget {
     }
 
     /// Does work that is paid from this budget wherever it calls [`steps`], [`nodes`] or [`bytes`]: on this thread, and on others
-    /// to which a [`Share`] is carried. A budget inside another one is apart from it: nothing is spent from the outer one.
+    /// to which a [`Share`] is carried. A budget inside another one is separate: nothing is spent from the outer one.
     ///
     /// # Errors
     /// It is used up: the work was left where it was, and what it has half done must not be used.
@@ -165,7 +165,7 @@ impl Budget {
     /// Spends bytes.
     ///
     /// # Errors
-    /// There are not so many left.
+    /// Not so many are left.
     pub fn bytes(&self, count: usize) -> Result<(), Spent> {
         spend(&self.bytes, 0, count, self.allowed.bytes).map_err(Spent::Bytes)
     }
@@ -173,7 +173,7 @@ impl Budget {
     /// Spends nodes.
     ///
     /// # Errors
-    /// There are not so many left.
+    /// Not so many are left.
     pub fn nodes(&self, count: usize) -> Result<(), Spent> {
         spend(&self.nodes, 1, count, self.allowed.nodes).map_err(Spent::Nodes)
     }
@@ -181,12 +181,12 @@ impl Budget {
     /// Spends steps.
     ///
     /// # Errors
-    /// There are not so many left.
+    /// Not so many are left.
     pub fn steps(&self, count: usize) -> Result<(), Spent> {
         spend(&self.steps, 2, count, self.allowed.steps).map_err(Spent::Steps)
     }
 
-    /// What is spent until now.
+    /// What has been spent so far.
     pub fn spent(&self) -> Allowance {
         let [bytes, nodes, steps] =
             [&self.bytes, &self.nodes, &self.steps].map(|count| count.load(Ordering::Relaxed));

@@ -1,4 +1,4 @@
-//! What a verdict is about: the parts of a statement, read from its text alone, by which a record is held to its claim.
+//! What a verdict is about: the parts of a statement, read from its text alone, by which a record is checked against its claim.
 
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +30,7 @@ pub enum ClaimKind {
     RowsOnBoxes,
 }
 
-/// At which states it is said.
+/// The states at which the claim is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs)] // names say it
@@ -74,8 +74,8 @@ pub struct ClaimParts {
 }
 
 impl ClaimParts {
-    /// The parts of a statement as it stands in a proof file. They tell claims from each other; what a claim means is left to
-    /// who reads it.
+    /// The parts of a statement as it stands in a proof file. They distinguish claims; the meaning of a claim is left to
+    /// whoever reads it.
     pub fn of(text: &str) -> ClaimParts {
         let text = without_comments(text);
         let words = words(&text);

@@ -1,4 +1,4 @@
-//! A verdict held to its claim: the claim is read from the proof file, its sides and rows are built anew, and the verdict is
+//! A verdict checked against its claim: the claim is read from the proof file, its sides and rows are built anew, and the verdict is
 //! confirmed only where its evidence implies it.
 
 use super::binding::{ClaimKind, ClaimParts, ClaimSense, RecordedWord};
@@ -128,8 +128,12 @@ fn without_states(
     rank: Option<usize>,
     with: Checking<'_>,
 ) -> Result<Finding, Doubt> {
-    let asked =
-        Asked { rank, given: None, is_generic: false, is_seen: record.asked.what == ClaimKind::Observable };
+    let asked = Asked {
+        rank,
+        given: None,
+        is_generic: false,
+        is_observable: record.asked.what == ClaimKind::Observable,
+    };
     let is_asked = record.asked.sense == ClaimSense::Generic && record.verdict == RecordedWord::Proved;
     if is_asked && is_shown(system, claim, asked, with)? {
         return Ok(Finding::Shown(ShownBy::Eliminated));

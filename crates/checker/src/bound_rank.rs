@@ -1,9 +1,11 @@
-//! Ranks held to what the proof file says: rows are built anew, and what is left out of the evidence is not taken for granted.
+//! Ranks checked against what the proof file says: rows are built anew, and what is left out of the evidence is not taken for granted.
 
 use super::binding::{ClaimKind, ClaimSense, RecordedWord, listed_statement};
 use super::bound_span::{Asked, is_shown};
 use super::checking::{Checking, operations};
-use super::claim::{BuiltClaim, ListedClaim, OWN_ROWS, Subject, further_rows, numbered_row, rows_of_words};
+use super::claim::{
+    BuiltClaim, ListedClaim, OWN_ROWS, Subject, further_rows, numbered_row, rows_of_lie_derivatives,
+};
 use super::claimed_rank::Tried;
 use super::doubt::{Doubt, Effort, Finding, Half, Missing, ShownBy, Unchecked};
 use super::listing::{Listing, Step};
@@ -56,19 +58,19 @@ pub(super) fn of_a_claim(
         Subject::Functions { functions } => functions.iter().map(|node| system.graph.text(*node)).collect(),
         _ => Vec::new(),
     };
-    let is_of_words = !given.words.iter().any(|word| of_functions.contains(word));
+    let is_of_lie_derivatives = !given.row_names.iter().any(|word| of_functions.contains(word));
     let own = own_matrix(system, claim, given)?;
     let is_refuted = record.verdict == RecordedWord::Refuted;
     let is_generic = is_generic(claim, &own);
     let rows = own.matrix.clone();
-    let finding = by_states(record, claim, (claimed, is_of_words), own, with)?;
+    let finding = by_states(record, claim, (claimed, is_of_lie_derivatives), own, with)?;
     let is_open = matches!(finding, Finding::HalfConfirmed(_) | Finding::Consistent { .. });
     let rank = match (&record.evidence, given.states.as_slice()) {
         (Evidence::ClaimedRank(_), [state]) if claimed.is_some() => Some(state.rank),
         (Evidence::ClaimedRank(_), _) if !is_refuted => None,
         _ => return Ok(finding),
     };
-    let is_seen = record.asked.what == ClaimKind::Observable;
+    let is_observable = record.asked.what == ClaimKind::Observable;
     if !is_open || record.asked.sense != ClaimSense::Generic {
         return Ok(finding);
     }
@@ -76,7 +78,7 @@ pub(super) fn of_a_claim(
     if is_full && is_rational(&rows) && is_full_on_each_part(system, &rows, with)? {
         return Ok(Finding::Shown(ShownBy::EachPart));
     }
-    let asked = Asked { rank, given: Some(given), is_generic, is_seen };
+    let asked = Asked { rank, given: Some(given), is_generic, is_observable };
     if is_shown(system, claim, asked, with)? {
         return Ok(Finding::Shown(ShownBy::Eliminated));
     }
@@ -115,7 +117,7 @@ fn is_full_on_each_part(system: &System, rows: &CertifiedRank, with: Checking<'_
 fn by_states(
     record: &VerdictRecord,
     claim: &BuiltClaim,
-    (claimed, is_of_words): (Option<usize>, bool),
+    (claimed, is_of_lie_derivatives): (Option<usize>, bool),
     own: OwnMatrix,
     with: Checking<'_>,
 ) -> Result<Finding, Doubt> {
@@ -130,21 +132,21 @@ fn by_states(
         }
         (Evidence::ClaimedRank(found), None) => {
             let full = own.matrix.columns.len();
-            let is_full = is_of_words && own.matrix.states.iter().any(|state| state.rank == full);
+            let is_full = is_of_lie_derivatives && own.matrix.states.iter().any(|state| state.rank == full);
             let is_generic = is_generic(claim, &own);
             let tried = Tried { is_whole: false, is_generic, assumes_more: false, longer: None };
             let finding = found.with_matrix(own.matrix).check_as(tried, with.seed, with.effort)?;
-            let is_seen = record.asked.what == ClaimKind::Observable;
-            Ok(what_is_observable(finding, is_full, is_seen != is_refuted))
+            let is_observable = record.asked.what == ClaimKind::Observable;
+            Ok(what_is_observable(finding, is_full, is_observable != is_refuted))
         }
         (Evidence::Rank(_), None) => {
             let finding = own.matrix.check(with.effort, with.interrupt);
             let full = own.matrix.columns.len();
-            let is_full = is_of_words
+            let is_full = is_of_lie_derivatives
                 && own.matrix.states.iter().any(|state| state.rank == full)
                 && is_generic(claim, &own);
-            let is_seen = record.asked.what == ClaimKind::Observable;
-            Ok(what_is_observable(finding, is_full, is_seen != is_refuted))
+            let is_observable = record.asked.what == ClaimKind::Observable;
+            Ok(what_is_observable(finding, is_full, is_observable != is_refuted))
         }
         (Evidence::ClaimedRank(_), Some(claimed)) => at_each_state(&own, claimed, (record, false), with),
         (_, Some(claimed)) => at_each_state(&own, claimed, (record, true), with),
@@ -152,7 +154,7 @@ fn by_states(
     }
 }
 
-/// Where the rank is full all functions are observable; else no state tells it.
+/// Where the rank is full all functions are observable; otherwise no state decides it.
 fn what_is_observable(finding: Finding, is_full: bool, is_said_to_be: bool) -> Finding {
     match finding {
         Finding::NotConfirmed(doubt) => Finding::NotConfirmed(doubt),
@@ -165,7 +167,7 @@ fn what_is_observable(finding: Finding, is_full: bool, is_said_to_be: bool) -> F
     }
 }
 
-/// A claim about a rank at each state of a set, or, of one at almost all states, a state at which the rank is another.
+/// A claim about a rank at each state of a set, or, for a generic one, a state at which the rank is another.
 fn at_each_state(
     own: &OwnMatrix,
     claimed: usize,
@@ -215,7 +217,7 @@ pub(super) fn at_states(
     let Evidence::Rank(given) = &record.evidence else {
         return Err(Doubt::OtherClaim("the evidence is of another kind than the verdict"));
     };
-    let (claim, is_own) = listed_claim(record, system, &given.words)?;
+    let (claim, is_own) = listed_claim(record, system, &given.row_names)?;
     if let Finding::NotConfirmed(doubt) = given.check(with.effort, with.interrupt) {
         return Err(doubt);
     }
@@ -261,7 +263,7 @@ pub(super) fn on_boxes(
     if given.digest != given.digest_of_the_rest() {
         return Err(Doubt::DigestDiffers);
     }
-    let (claim, is_own) = listed_claim(record, system, &given.words)?;
+    let (claim, is_own) = listed_claim(record, system, &given.row_names)?;
     let Subject::Matrix { rows, .. } = &claim.subject else {
         return Ok(Finding::NotChecked(Unchecked::Nothing));
     };
@@ -270,7 +272,7 @@ pub(super) fn on_boxes(
     }
     let chosen: Vec<&Vec<NodeId>> = match is_own {
         true => given
-            .words
+            .row_names
             .iter()
             .map(|word| Ok(&rows[numbered_row(word, rows.len())?]))
             .collect::<Result<_, Doubt>>()?,
@@ -286,11 +288,11 @@ pub(super) fn on_boxes(
     Ok(own.check(with.effort, with.interrupt))
 }
 
-/// The claim that is no claim: rows of the file, or of its Lie derivatives, and what is assumed.
+/// A claim made of what is listed: rows of the file, or of its Lie derivatives, and what is assumed.
 fn listed_claim(
     record: &VerdictRecord,
     system: &mut System,
-    words: &[String],
+    row_names: &[String],
 ) -> Result<(BuiltClaim, bool), Doubt> {
     let asked = &record.asked;
     let (id, is_own) = match asked.what {
@@ -308,7 +310,7 @@ fn listed_claim(
         return Err(Doubt::OtherClaim("it is filed under another name, or says something else"));
     }
     let rows = match is_own {
-        false => rows_of_words(system, words, &[])?,
+        false => rows_of_lie_derivatives(system, row_names, &[])?,
         true => match system.definition(OWN_ROWS) {
             Some(Value::Matrix(matrix)) if matrix.columns == system.unknown_count() => {
                 matrix.entries.chunks(matrix.columns.max(1)).map(<[NodeId]>::to_vec).collect()
@@ -327,17 +329,17 @@ fn listed_claim(
 fn own_matrix(system: &mut System, claim: &BuiltClaim, given: &CertifiedRank) -> Result<OwnMatrix, Doubt> {
     let (rows, columns) = match &claim.subject {
         Subject::Matrix { rows, columns, .. } => (rows, *columns),
-        Subject::System { .. } => return of_words(system, claim, given, &[]),
-        Subject::Functions { functions } => return of_words(system, claim, given, functions),
+        Subject::System { .. } => return of_lie_derivatives(system, claim, given, &[]),
+        Subject::Functions { functions } => return of_lie_derivatives(system, claim, given, functions),
         _ => return Err(Doubt::OtherClaim("the evidence is of another kind than the claim")),
     };
     let places: Vec<usize> =
-        given.words.iter().map(|word| numbered_row(word, rows.len())).collect::<Result<_, _>>()?;
+        given.row_names.iter().map(|word| numbered_row(word, rows.len())).collect::<Result<_, _>>()?;
     if given.columns.len() != columns {
         return Err(Doubt::OtherColumns);
     }
     let mut own = lowered(system, claim, given, (rows, Vec::new()))?;
-    own.matrix.words = (1..=rows.len()).map(|row| format!("row {row}")).collect();
+    own.matrix.row_names = (1..=rows.len()).map(|row| format!("row {row}")).collect();
     for (index, state) in own.matrix.states.iter_mut().enumerate() {
         for row in &mut state.minor.rows {
             let place = places.get(*row).copied();
@@ -348,7 +350,7 @@ fn own_matrix(system: &mut System, claim: &BuiltClaim, given: &CertifiedRank) ->
     Ok(own)
 }
 
-fn of_words(
+fn of_lie_derivatives(
     system: &mut System,
     claim: &BuiltClaim,
     given: &CertifiedRank,
@@ -357,17 +359,17 @@ fn of_words(
     if given.columns != system.column_names() {
         return Err(Doubt::OtherColumns);
     }
-    let rows = rows_of_words(system, &given.words, functions)?;
+    let rows = rows_of_lie_derivatives(system, &given.row_names, functions)?;
     // with the differential of a function among them further rows would say something else
-    let further = if functions.is_empty() { further_rows(system, &given.words) } else { Vec::new() };
+    let further = if functions.is_empty() { further_rows(system, &given.row_names) } else { Vec::new() };
     lowered(system, claim, given, (&rows, further))
 }
 
-/// The same of rows that were built already, one a word of the evidence.
+/// The same for rows that were built already, one for each row name of the evidence.
 fn of_rows(system: &mut System, claim: &BuiltClaim, given: &CertifiedRank) -> Result<OwnMatrix, Doubt> {
     match &claim.subject {
         Subject::Matrix { rows, .. } if given.columns == system.column_names() => {
-            let further = further_rows(system, &given.words);
+            let further = further_rows(system, &given.row_names);
             lowered(system, claim, given, (rows, further))
         }
         _ => Err(Doubt::OtherColumns),

@@ -1,7 +1,7 @@
 //! Generic ranks and what is observable, shown by elimination among expressions: of a matrix by its rows, of a system by the forms that all Lie derivatives stay among.
 
 use super::checking::Checking;
-use super::claim::{BuiltClaim, Compared, Subject, rows_of_words, sides};
+use super::claim::{BuiltClaim, Compared, Subject, rows_of_lie_derivatives, sides};
 use super::doubt::{Doubt, Effort, Missing};
 use super::evaluation::Evaluation;
 use super::listing::{Listing, Step};
@@ -28,12 +28,12 @@ const DRAWN: u64 = 8;
 pub(super) struct Asked<'a> {
     /// The rank that was found; of functions none is asked.
     pub rank: Option<usize>,
-    /// The rows that have it at a state, where there are some.
+    /// Rows that have this rank at a state, where there are some.
     pub given: Option<&'a CertifiedRank>,
     /// Whether a minor of those rows that is not zero at one state is not zero at almost all.
     pub is_generic: bool,
     /// Of functions: whether they are observable or not.
-    pub is_seen: bool,
+    pub is_observable: bool,
 }
 
 /// Whether a rank that was found, or what is said of functions, holds at almost all states that are meant. `false` says nothing.
@@ -107,8 +107,8 @@ fn try_show(
         (Subject::Matrix { rows, .. }, Some(rank)) => has_rank(system, claim, rows, rank, effort),
         // a full rank needs no more than the rows that have it
         (Subject::System { .. }, Some(rank)) if rank == system.unknown_count() => {
-            let Some(words) = asked.given.and_then(words_of_the_minor) else { return Ok(false) };
-            let rows = rows_of_words(system, &words, &[])?;
+            let Some(words) = asked.given.and_then(rows_of_the_minor) else { return Ok(false) };
+            let rows = rows_of_lie_derivatives(system, &words, &[])?;
             has_rank(system, claim, &rows, rank, effort)
         }
         (Subject::System { .. }, Some(_)) => has_forms(system, claim, &[], asked, effort),
@@ -117,10 +117,10 @@ fn try_show(
     }
 }
 
-/// The words whose differentials are independent at the first state.
-fn words_of_the_minor(given: &CertifiedRank) -> Option<Vec<String>> {
+/// The names of the rows that are independent at the first state.
+fn rows_of_the_minor(given: &CertifiedRank) -> Option<Vec<String>> {
     let minor = &given.states.first()?.minor;
-    minor.rows.iter().map(|row| given.words.get(*row).cloned()).collect()
+    minor.rows.iter().map(|row| given.row_names.get(*row).cloned()).collect()
 }
 
 fn placed(lowering: &mut Lowering<'_>, rows: &[Vec<NodeId>]) -> Result<Vec<RowPlaces>, Missing> {
@@ -139,14 +139,15 @@ fn has_rank(
 }
 
 /// The rank that a minor of Lie derivatives has at almost all states, where there is one.
-fn rank_of_words(system: &System, functions: &[NodeId], asked: Asked<'_>) -> Option<usize> {
-    let words = asked.given.filter(|_| asked.is_generic).and_then(words_of_the_minor)?;
+fn rank_of_lie_derivatives(system: &System, functions: &[NodeId], asked: Asked<'_>) -> Option<usize> {
+    let words = asked.given.filter(|_| asked.is_generic).and_then(rows_of_the_minor)?;
     let is_function = |word: &String| functions.iter().any(|node| system.graph.text(*node) == *word);
     (!words.iter().any(is_function)).then_some(words.len())
 }
 
-/// What is said of the codistribution of a system, where that is an argument: where no field leaves the set on which the conditions hold, and not in discrete time. By affine fields that keep the system, else by
-/// its forms; these have coefficients that hold signals, and are not derived where there are some.
+/// What is claimed of the codistribution of a system, where this can be argued: no field leaves the set on which the conditions
+/// hold, and time is continuous. By affine fields that keep the system, else by its forms, whose coefficients may contain signals;
+/// forms are not derived where there are some.
 fn has_forms(
     system: &mut System,
     claim: &BuiltClaim,
@@ -159,7 +160,7 @@ fn has_forms(
     if system.time == Time::Discrete || !system.signal_chains().iter().flatten().all(is_known) {
         return Ok(false);
     }
-    let rank_of_words = rank_of_words(system, functions, asked);
+    let rank_of_lie_derivatives = rank_of_lie_derivatives(system, functions, asked);
     if !is_kept(system, claim, &effort.limited(WORK / 8))? {
         return Ok(false);
     }
@@ -208,12 +209,12 @@ fn has_forms(
             Ok((outputs, functions, differences, moving))
         })?;
     let (inside, outside): (&[RowPlaces], &[RowPlaces]) =
-        if asked.is_seen { (&functions, &[]) } else { (&[], &functions) };
+        if asked.is_observable { (&functions, &[]) } else { (&[], &functions) };
     let (states, outputs, fields) = (Equations::without_sides(&listed), &outputs[..], &fields[..]);
     // what is no less by the minor is no more by as many fields
-    let dimension = rank_of_words.map(|rank| columns.len().saturating_sub(rank));
+    let dimension = rank_of_lie_derivatives.map(|rank| columns.len().saturating_sub(rank));
     let needs_dimension = asked.rank.is_some() || !inside.is_empty();
-    let agrees = asked.rank.is_none() || asked.rank == rank_of_words;
+    let agrees = asked.rank.is_none() || asked.rank == rank_of_lie_derivatives;
     if agrees && (dimension.is_some() || !needs_dimension) {
         let dimension = dimension.filter(|_| needs_dimension);
         let constant = &[outputs, &differences].concat();

@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub struct SymbolRange {
     /// The symbol by its name.
     pub symbol: String,
-    /// Whether it is an angle, in radians: for those who read the file; its values are taken as they are.
+    /// Whether it is an angle, in radians: for those who read the file; it changes no value.
     pub angle: bool,
     /// The lower end.
     pub low: Ratio,
@@ -44,21 +44,21 @@ pub struct CertifiedBoxes {
     pub listing: Listing,
     /// What the columns stand for: the names of the states.
     pub columns: Vec<String>,
-    /// What the rows stand for: words of Lie derivatives, or rows of the file's own.
-    pub words: Vec<String>,
-    /// The entries, as places of the listing; a row for each word.
+    /// What the rows stand for: Lie derivatives, or rows of the file's own.
+    pub row_names: Vec<String>,
+    /// The entries, as places of the listing; a row for each name.
     pub rows: Vec<Vec<usize>>,
     /// Where the rows, and the system that they are rows of, exist.
     pub requirements: Vec<Requirement>,
-    /// The whole box, and what the other symbols are.
+    /// The sides of the whole box, and the ranges or values of the other symbols.
     pub ranges: Vec<SymbolRange>,
     /// The boxes, each with the rows of its minor.
     pub boxes: Vec<CertifiedBox>,
-    /// The part of the whole box that these boxes make.
+    /// The fraction of the whole box that these boxes cover.
     pub volume: Ratio,
-    /// How many boxes were proved in all, and what part of the whole they make.
+    /// How many boxes were proved in all.
     pub proved_boxes: Ratio,
-    /// Their volume together, in parts of the whole.
+    /// The fraction of the whole box that all proved boxes cover.
     pub proved_volume: Ratio,
     /// A digest of all else, by which a file that was changed by hand is noticed. It is no signature.
     pub digest: String,
@@ -100,7 +100,7 @@ impl CertifiedBoxes {
         }
     }
 
-    /// What was confirmed, in words.
+    /// What was confirmed, as text.
     pub fn in_words(&self) -> String {
         format!(
             "full rank shown again on {} boxes, {} of the whole volume",
@@ -116,7 +116,7 @@ impl CertifiedBoxes {
     fn check_shape(&self) -> Result<Vec<&SymbolRange>, Doubt> {
         let steps = self.listing.steps();
         let ragged = self.columns.is_empty()
-            || self.rows.len() != self.words.len()
+            || self.rows.len() != self.row_names.len()
             || self.rows.iter().any(|row| row.len() != self.columns.len());
         if ragged {
             return Err(Doubt::Ragged);
@@ -150,7 +150,7 @@ impl CertifiedBoxes {
         Ok(free)
     }
 
-    /// Whether no two boxes have more than an edge in common, and all together make the volume that is told.
+    /// Whether no two boxes have more than an edge in common, and all together have the volume that is given.
     fn check_volume(&self, free: &[&SymbolRange], effort: &Effort) -> Result<(), Doubt> {
         let apart = |a: &CertifiedBox, b: &CertifiedBox| {
             let mut sides = a.sides.iter().zip(&b.sides);
@@ -234,9 +234,9 @@ impl CertifiedBoxes {
         Ok(())
     }
 
-    /// Leaves out the boxes that this check does not show with the work that each of them may take, and notes the volume
-    /// of the others; returns how many were left out. What is written is then what will be found again; but a box in which
-    /// the rows do not exist stays, so that the fault is seen by whoever checks.
+    /// Leaves out the boxes that this check does not confirm with the work that each of them may take, and notes the volume
+    /// of the others; returns how many were left out. What is written can then be confirmed again; but a box in which
+    /// the rows do not exist stays, so that whoever checks notices the fault.
     pub fn keep_what_is_shown(&mut self, effort_of_each: u64, interrupt: &AtomicBool) -> usize {
         let before = self.boxes.len();
         let Some((shown, volume)) = self.what_is_shown(effort_of_each, interrupt) else { return 0 };

@@ -1,4 +1,4 @@
-//! What a check against a proof file is done with.
+//! The inputs of a check against a proof file.
 
 use super::binding::ClaimSense;
 use super::doubt::Effort;
@@ -7,7 +7,7 @@ use super::sources::ProofSources;
 use super::state::{ExactCoordinate, ExactState};
 use std::sync::atomic::AtomicBool;
 
-/// What a check is done with.
+/// The inputs of a check.
 #[derive(Clone, Copy, Debug)]
 pub struct Checking<'c> {
     /// Where the proof files are.

@@ -10,7 +10,7 @@ use palmistry_lang::{ClaimBody, Statement, System, Value};
 use palmistry_math::expression::syntax::{Equation, Expr, Relation};
 use palmistry_math::expression::{Guard, Need, NodeId, Symbol, add_guard, gradient};
 
-/// Of the words of a verdict no more nodes are made.
+/// Graphs of more nodes are refused while rows are built from the names in a verdict.
 const LARGEST_GRAPH: usize = 2_000_000;
 /// Lie derivatives are of no higher order.
 const HIGHEST_ORDER: usize = 64;
@@ -35,7 +35,7 @@ pub(super) enum Subject {
     Functions { functions: Vec<NodeId> },
     /// The order of a pole of an expression where another one vanishes.
     Pole { expression: NodeId, factor: NodeId, order: i64 },
-    /// What is looked at nowhere: numbers of solutions.
+    /// Claims that are not examined: numbers of solutions.
     Other,
 }
 
@@ -273,14 +273,14 @@ fn whole(system: &System, node: NodeId) -> Result<usize, Doubt> {
 }
 
 /// The rows that some names stand for: differentials of outputs, of their Lie derivatives `Lg Lf^3 y`, and of functions.
-pub(super) fn rows_of_words(
+pub(super) fn rows_of_lie_derivatives(
     system: &mut System,
-    words: &[String],
+    row_names: &[String],
     functions: &[NodeId],
 ) -> Result<Vec<Vec<NodeId>>, Doubt> {
     let unknowns = system.unknowns();
     let mut rows = Vec::new();
-    for text in words {
+    for text in row_names {
         let function = functions.iter().copied().find(|function| system.graph.text(*function) == *text);
         let of = match function {
             Some(function) => function,
@@ -336,8 +336,8 @@ const MOST_NODES: usize = 60_000;
 
 /// The rows of all Lie derivatives of one order more than those of the evidence, as far as they are few and short: what
 /// was left out of the evidence is among them.
-pub(super) fn further_rows(system: &mut System, words: &[String]) -> Vec<Vec<NodeId>> {
-    let orders = words.iter().filter_map(|word| fields_and_output(system, word).ok());
+pub(super) fn further_rows(system: &mut System, row_names: &[String]) -> Vec<Vec<NodeId>> {
+    let orders = row_names.iter().filter_map(|word| fields_and_output(system, word).ok());
     let order = orders.map(|(fields, _)| fields.len()).max().unwrap_or(0) + 1;
     let (unknowns, moving, begin) = (system.unknowns(), system.moving_fields(), system.graph.len());
     let mut last: Vec<NodeId> = system.outputs.iter().map(|(_, value)| *value).collect();

@@ -13,7 +13,7 @@ const COMPARED: usize = 4;
 /// The work on them.
 const TRIED: u64 = 1 << 26;
 
-/// What became of a claim.
+/// The verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ClaimedWord {

@@ -1,10 +1,10 @@
-//! What a check can come to, and why it did not confirm.
+//! The possible results of a check, and why it did not confirm.
 
 use palmistry_math::number::Refusal;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Why an operation of a listing has no value at a state, as far as the checker can tell.
+/// Why an operation of a listing has no value at a state, as far as the checker knows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Missing {
     /// The operation itself, or what it needs, was refused.
@@ -39,11 +39,11 @@ impl Missing {
     }
 }
 
-/// The work that is left to a check, in operations on numbers of about a machine word.
+/// The remaining work of a check, in operations on numbers of about a machine word.
 #[derive(Debug)]
 pub struct Effort {
     left: Arc<AtomicU64>,
-    /// Of what it is a part, from all of which as much is taken.
+    /// The larger budgets that it is a part of; as much is taken from each of them.
     wholes: Vec<Arc<AtomicU64>>,
 }
 
@@ -58,24 +58,24 @@ impl Default for Effort {
 const LEAST_PART: u64 = 1 << 30;
 
 impl Effort {
-    /// So much and no more.
+    /// This much work and no more.
     pub fn new(operations: u64) -> Self {
         Effort { left: Arc::new(AtomicU64::new(operations)), wholes: Vec::new() }
     }
 
-    /// The part of each of so many verdicts: one that asks for too much leaves the others theirs.
+    /// The part of each of so many verdicts: one that asks for too much does not use up that of the others.
     pub fn part(&self, verdicts: usize) -> Effort {
         let each = self.left.load(Ordering::Relaxed) / (verdicts.max(1) as u64);
         self.limited(each.max(LEAST_PART))
     }
 
-    /// No more than so much of it.
+    /// At most so much of it.
     pub fn limited(&self, operations: u64) -> Effort {
         let wholes = std::iter::once(&self.left).chain(&self.wholes).cloned().collect();
         Effort { left: Arc::new(AtomicU64::new(operations)), wholes }
     }
 
-    /// Takes some of it.
+    /// Spends some of it.
     ///
     /// # Errors
     /// Where there is not so much left.
@@ -219,7 +219,7 @@ impl Doubt {
     }
 }
 
-/// By what a verdict was shown without states.
+/// How a verdict was shown without states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // messages say it
 pub enum ShownBy {
@@ -231,7 +231,7 @@ pub enum ShownBy {
     EachPart,
 }
 
-/// Which half of a verdict was found again.
+/// Which half of a verdict was confirmed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // messages say it
 pub enum Half {
@@ -249,7 +249,7 @@ pub enum Half {
     NoLessAtStates { times: usize },
 }
 
-/// Why a verdict was not looked at.
+/// Why a verdict was not examined.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // messages say it
 pub enum Unchecked {
@@ -265,27 +265,27 @@ pub enum Unchecked {
     TiedOutputs,
 }
 
-/// What a check has come to.
+/// The result of a check.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // names and messages say it
 pub enum Finding {
-    /// The evidence implies the verdict, and has been found again by evaluation alone. How often something was checked: states,
+    /// The evidence implies the verdict, and has been confirmed by evaluation alone. How often something was checked: states,
     /// boxes.
     Confirmed { times: usize },
-    /// The same by exact arithmetic with expressions in the place of states.
+    /// The same by exact arithmetic with expressions instead of states.
     Shown(ShownBy),
-    /// One half of it was.
+    /// One half of the verdict was confirmed.
     HalfConfirmed(Half),
-    /// What was evaluated agrees with the verdict and does not prove it: so many states beyond the one in the file.
+    /// What was evaluated agrees with the verdict but does not prove it; the number of states beyond the one in the file.
     Consistent { states: usize },
-    /// The verdict comes with nothing that evaluation could check, or nothing that it is about is there.
+    /// The verdict has no evidence that evaluation could check, or its subject is not available.
     NotChecked(Unchecked),
-    /// It has not been found again.
+    /// The verdict is not confirmed.
     NotConfirmed(Doubt),
 }
 
 impl Finding {
-    /// The finding in words, as `recheck` prints them.
+    /// The finding as text, as `recheck` prints it.
     pub fn word(&self) -> &'static str {
         match self {
             Finding::Confirmed { .. } | Finding::Shown(_) => "confirmed",

@@ -28,7 +28,7 @@ pub struct Evaluation<'c> {
     listing: &'c Listing,
     state: &'c ExactState,
     effort: &'c Effort,
-    /// Evaluated when it is first asked for: fractions can become long where a few bits tell enough.
+    /// Evaluated when it is first asked for: fractions can become long where a few bits suffice.
     exact: OnceCell<Values<Form>>,
     enclosed: [OnceCell<Values<Enclosure>>; PRECISIONS.len()],
 }
@@ -143,7 +143,7 @@ impl<'c> Evaluation<'c> {
         }
     }
 
-    /// What the fewest bits tell, where exact values have not been asked for.
+    /// The answer at the lowest precision, where exact values have not been asked for.
     pub fn at_first_sight<T>(&self, ask: impl Fn(usize) -> Result<Option<T>, Missing>) -> Option<T> {
         if self.exact.get().is_some() { None } else { ask(0).ok().flatten() }
     }
@@ -168,7 +168,7 @@ impl<'c> Evaluation<'c> {
         last
     }
 
-    /// Whether an operation has the value zero, exactly; also `false` where that is not told.
+    /// Whether an operation has the value zero, exactly; also `false` where that is not known.
     ///
     /// # Errors
     /// Where it has no value.
@@ -181,7 +181,7 @@ impl<'c> Evaluation<'c> {
         }
     }
 
-    /// How two operations that differ stand to each other; `None` where that is not told.
+    /// How two operations that differ compare; `None` where that is not known.
     ///
     /// # Errors
     /// Where one of them has no value.

@@ -66,7 +66,7 @@ impl Form {
         self.rest.is_empty() && self.rational.is_zero()
     }
 
-    /// The work of an operation that makes it: the square of its length in words.
+    /// The work of an operation that makes it: the square of its length in machine words.
     pub fn work(&self) -> u64 {
         std::iter::once(&self.rational).chain(self.rest.values()).map(work_on).sum()
     }
@@ -121,7 +121,7 @@ impl Exact {
         Form { rational: RBig::ZERO, rest: BTreeMap::from([(Product::from([(atom, 1)]), RBig::ONE)]) }
     }
 
-    /// A form that is not too long, its bits taken from what is left.
+    /// A form that is not too long, its bits taken from the remaining room.
     fn kept(&self, form: Form) -> Result<Form, Refusal> {
         let length = |value: &RBig| value.numerator().bit_len() + value.denominator().bit_len();
         let bits = form.rest.values().map(length).sum::<usize>() + length(&form.rational) + 64;
@@ -248,7 +248,7 @@ impl Exact {
         let twenty_four = IBig::from(24);
         let place = ((parts.numerator() % &twenty_four) + &twenty_four) % &twenty_four;
         let place = i64::try_from(place).ok()?;
-        // three of them are an eighth of a turn and four a sixth: of the first as many as leave a multiple of four
+        // three of them are an eighth of a turn and four a sixth: of the first as many as make the rest a multiple of four
         let eighths = (-place).rem_euclid(4);
         let sixths = (place - 3 * eighths) / 4;
         let half = RBig::ONE / RBig::from(2);

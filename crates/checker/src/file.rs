@@ -8,9 +8,10 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 
-/// The name of the schema, and its version. Verdicts of versions 1 and 2 are bound to no claim, and are not read.
+/// The name of the schema, and its version. Verdicts of versions 1 and 2 are bound to no claim, and in version 3 the names of rows stand under
+/// another key, so that digests differ: these are not read.
 const SCHEMA: &str = "palmistry-verdicts";
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// No verdict file is longer, in bytes.
 pub const LARGEST_FILE: u64 = 1 << 28;
 
@@ -28,7 +29,7 @@ pub struct VerdictFile {
     pub verdicts: Vec<VerdictRecord>,
 }
 
-/// What is read first, so that a file of another version is told from a damaged one.
+/// What is read first, so that a file of another version can be distinguished from a damaged one.
 #[derive(Deserialize)]
 struct Header {
     schema: String,
@@ -45,9 +46,7 @@ pub enum Unreadable {
     Damaged(#[from] serde_json::Error),
     #[error("it is no verdict file: its schema is '{0}' and not '{SCHEMA}'")]
     OtherSchema(String),
-    #[error(
-        "its version is {0}, in which verdicts were not bound to their claims: write it anew with this program"
-    )]
+    #[error("its version is {0}, and this program reads version {VERSION}: write it anew with this program")]
     OlderVersion(u32),
     #[error("its version is {0}, and this program reads version {VERSION}")]
     OtherVersion(u32),
@@ -58,7 +57,7 @@ pub enum Unreadable {
 pub struct CheckedVerdict<'f> {
     /// The verdict of the file.
     pub record: &'f VerdictRecord,
-    /// What came of it.
+    /// The result of the check.
     pub finding: Finding,
 }
 

@@ -13,7 +13,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-/// So many states are drawn, at so many of which both sides are compared.
+/// How many states are drawn, and at how many of them both sides are compared.
 pub(super) const DRAWN: usize = 60;
 const COMPARED: usize = 6;
 

@@ -3,8 +3,8 @@
 //! An engine that refutes, certifies or proves writes down what its verdict rests on: a `Listing` of operations as plain
 //! data, a state in exact numbers, the two sides, a minor. The checker reads the claim from the proof file, builds its sides and
 //! rows anew, and evaluates them naively, one operation after the other: a `Refutation` at its witness, a `CertifiedRank` by its
-//! minor and its kernel, a `StatedIdentity` and a `ClaimedRank` at states of its own choice. Equations and generic ranks it shows by itself, by multiplying out and by elimination (`normal`). What each word means that it says is told in
-//! `book/src/verdicts.md`.
+//! minor and its kernel, a `StatedIdentity` and a `ClaimedRank` at states of its own choice. Equations and generic ranks it shows
+//! by itself, by multiplying out and by elimination (`normal`). The words of its findings are explained in `book/src/verdicts.md`.
 //!
 //! This floor knows exact numbers ([`palmistry_math::number`]), expressions with their derivatives, and the reader of proof files
 //! ([`palmistry_lang`]); none of the engines.

@@ -50,9 +50,9 @@ pub struct CertifiedRank {
     pub listing: Listing,
     /// What the columns stand for: the names of the states.
     pub columns: Vec<String>,
-    /// What the rows stand for: the differentials of these words.
-    pub words: Vec<String>,
-    /// The entries, as places of the listing; a row for each word.
+    /// What the rows stand for: the differentials of these Lie derivatives.
+    pub row_names: Vec<String>,
+    /// The entries, as places of the listing; a row for each name.
     pub rows: Vec<Vec<usize>>,
     /// What the states have to meet.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -82,7 +82,7 @@ impl CertifiedRank {
     /// Whether there are states, and every row has an entry a column.
     pub(super) fn shape(&self) -> Result<(), Doubt> {
         let width = self.columns.len();
-        let ragged = self.rows.len() != self.words.len()
+        let ragged = self.rows.len() != self.row_names.len()
             || self.rows.iter().any(|row| row.len() != width)
             || !(1..=MOST_COLUMNS).contains(&width);
         match self.states.is_empty() {
@@ -191,7 +191,7 @@ impl CertifiedRank {
         let rational = |place: &usize| values.rational(*place).cloned();
         let exact: Option<Vec<Vec<RBig>>> =
             places.iter().map(|row| row.iter().map(rational).collect()).collect();
-        // fractions may grow too long to be eliminated; enclosures then still may tell
+        // fractions may grow too long to be eliminated; enclosures then may still decide
         if let Some(full) = exact.and_then(|rows| has_full_rank(&NUMBERS, rows, paid_from(effort)).ok()) {
             return if full { Ok(()) } else { Err(Doubt::MinorVanishes(state)) };
         }
@@ -214,8 +214,8 @@ fn paid_from(effort: &Effort) -> impl Fn(&RBig) -> Result<(), Refusal> {
     |value| effort.spend(work_on(value)).map_err(|_| Refusal::TooLarge)
 }
 
-/// The rank of a matrix by elimination that takes a pivot only where it is certainly not zero. Over numbers that are always
-/// told from zero it is the rank; over others it is no more than the rank.
+/// The rank of a matrix by elimination that takes a pivot only where it is certainly not zero. Over numbers that can always be
+/// distinguished from zero it is the rank; over others it is no more than the rank.
 fn rank<A: Arithmetic>(
     arithmetic: &A,
     mut rows: Vec<Vec<A::Number>>,
@@ -249,7 +249,7 @@ fn rank<A: Arithmetic>(
     Ok(rows.len())
 }
 
-/// Whether the product of a row and a vector is zero; `None` where that is not told.
+/// Whether the product of a row and a vector is zero; `None` where that is not known.
 fn annihilates(
     values: &Evaluation<'_>,
     entries: &[usize],

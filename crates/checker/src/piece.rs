@@ -14,7 +14,7 @@ use palmistry_math::number::{Function, Interval, RealNumber};
 enum Source {
     /// A side of the box.
     Side(usize),
-    /// A symbol that is held.
+    /// A symbol that is fixed.
     Held(Interval),
     Operation,
 }
@@ -66,7 +66,7 @@ enum Order {
 }
 
 impl<'c> Cover<'c> {
-    /// Prepares a listing; `side` and `held` tell what a symbol is. `None` where nothing is known of one.
+    /// Prepares a listing; `side` and `held` say what a symbol is. `None` where a symbol is neither.
     pub fn new(
         listing: &'c Listing,
         sides: usize,

@@ -24,7 +24,7 @@ pub enum Evidence {
     ClaimedRank(ClaimedRank),
     /// Boxes, each with its minor.
     Boxes(CertifiedBoxes),
-    /// Nothing that evaluation could check; in words, why.
+    /// Nothing that evaluation could check; the reason, as text.
     Unchecked(String),
 }
 
@@ -49,7 +49,7 @@ pub struct VerdictRecord {
 }
 
 impl Evidence {
-    /// What it says by itself, whatever claim it is filed under: that its listing is what the claim says is not looked at.
+    /// Checks the evidence by itself, whatever claim it is filed under: whether its listing is that of the claim is not checked.
     pub fn check_alone(&self, seed: u64, effort: &Effort, interrupt: &AtomicBool) -> Finding {
         match self {
             Evidence::Refuted(refutation) => refutation.check(effort),

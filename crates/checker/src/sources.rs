@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A system, or in words why its file was not read.
+/// A system, or as text why its file was not read.
 type Source = Result<Arc<System>, String>;
 
 /// Where proof files are read from.
@@ -22,7 +22,7 @@ impl ProofSources {
         ProofSources { folder, known: Mutex::default() }
     }
 
-    /// Systems that were read already, by their names, and no files.
+    /// Systems that were read already, by their names; no files are read.
     pub fn given(systems: impl IntoIterator<Item = System>) -> Self {
         let known = systems.into_iter().map(|system| (system.name.clone(), Ok(Arc::new(system))));
         ProofSources { folder: PathBuf::new(), known: Mutex::new(known.collect()) }

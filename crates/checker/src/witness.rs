@@ -11,7 +11,7 @@ use palmistry_math::number::Arithmetic;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 
-/// How one side is claimed to stand to the other.
+/// The relation that is claimed between the two sides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SidesRelation {
     #[default]
@@ -34,7 +34,7 @@ impl SidesRelation {
         *self == SidesRelation::Equal
     }
 
-    /// Whether it holds of two numbers that stand so to each other.
+    /// Whether it holds for two numbers in this order.
     fn admits(self, order: Ordering) -> bool {
         match self {
             SidesRelation::Equal => order.is_eq(),
@@ -61,7 +61,7 @@ pub struct Sides {
 }
 
 impl Sides {
-    /// Whether the relation holds; `None` where that is not told.
+    /// Whether the relation holds; `None` where that is not known.
     pub(super) fn hold(self, values: &Evaluation<'_>) -> Result<Option<bool>, Missing> {
         let difference = values.difference(self.left, self.right)?;
         match (self.relation, difference) {
@@ -195,7 +195,7 @@ pub(super) fn holds(
 }
 
 impl Requirement {
-    /// Whether it is met; `None` where that is not told.
+    /// Whether it is met; `None` where that is not known.
     fn is_met(self, values: &Evaluation<'_>) -> Result<Option<bool>, Missing> {
         let enclosed = |precision| {
             let value = values.enclosed(self.step, precision)?;
@@ -228,7 +228,7 @@ impl RequirementKind {
     }
 }
 
-/// Whether two sides differ by no more than a tolerance; `None` where that is not told.
+/// Whether two sides differ by no more than a tolerance; `None` where that is not known.
 pub(super) fn is_within(
     values: &Evaluation<'_>,
     sides: Sides,
@@ -306,7 +306,7 @@ impl Decimal {
         Some(Decimal { value: digits * power_of_ten(place), slack: half_of_place(place) })
     }
 
-    /// Whether an operation has this value, up to the slack; `None` where that is not told.
+    /// Whether an operation has this value, up to the slack; `None` where that is not known.
     fn is(&self, values: &Evaluation<'_>, place: usize) -> Result<Option<bool>, Missing> {
         let (least, largest) = (&self.value - &self.slack, &self.value + &self.slack);
         let between = |low: &RBig, high: &RBig| {

@@ -74,7 +74,7 @@ impl Definitions {
     }
 
     /// How often values are put into values in an expression, `e at {x = (y at {z = 0})} at {z = w}`: the library writes each of them
-    /// out, so that terms grow with each as a product does. What the graph folds on the way is not seen from its size.
+    /// out, so that terms grow with each as a product does. The size of the graph does not show what was folded on the way.
     pub fn puts_in(&self, prefix: &str, expr: &Expr) -> usize {
         let of = |part: &Expr| self.puts_in(prefix, part);
         match &expr.kind {

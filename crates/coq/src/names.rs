@@ -137,7 +137,8 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// The name in Coq of what has this name here; the kind tells apart what may share a name: `claim`, `field`.
+    /// The name in Coq of what has this name here; the kind distinguishes what may share a name: `claim`,
+    /// `field`.
     pub fn of(&mut self, kind: &str, name: &str) -> String {
         let key = format!("{kind} {name}");
         if let Some(known) = self.given.get(&key) {

@@ -1,5 +1,5 @@
-//! A state in exact numbers at which two sides have values, or differ. It is sought here and shown there: Coq calculates both sides at it
-//! (`proofs/coq/Point.v`).
+//! A state in exact numbers at which two sides have values, or differ. It is searched for here and checked there: Coq calculates both
+//! sides at it (`proofs/coq/Point.v`).
 
 use dashu::base::BitTest;
 use dashu::integer::IBig;

@@ -37,7 +37,7 @@ pub(crate) struct Printed {
     hold: Hold,
 }
 
-/// No longer term is one that a person reads.
+/// Longer terms are refused: nobody would read them.
 const LONGEST: usize = 100_000;
 
 /// Why something cannot be written.

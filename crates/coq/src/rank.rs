@@ -1,5 +1,5 @@
-//! Ranks that are reached: a state in exact numbers, and rows that are independent there. They are sought here, modulo a prime, and shown
-//! there: Coq calculates the rows and eliminates (`proofs/coq/Rank.v`).
+//! Ranks that are reached: a state in exact numbers, and rows that are independent there. They are searched for here, modulo a prime, and
+//! proved there: Coq calculates the rows and eliminates (`proofs/coq/Rank.v`).
 
 use crate::place::{Compared, DEEPEST, Extent, State, Values, extent, search};
 use crate::printer::Reason;
@@ -35,7 +35,7 @@ pub(crate) fn of_matrix(
     found.ok_or_else(|| NOWHERE.to_owned())
 }
 
-/// An output, and the fields along which it is derived, the last one first.
+/// An output, and the fields along which it is differentiated, the last one first.
 #[derive(Clone)]
 pub(crate) struct Word {
     pub fields: Vec<usize>,

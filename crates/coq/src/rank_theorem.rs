@@ -144,7 +144,7 @@ impl OfClaim<'_> {
                 idents.push(known.clone()?);
                 continue;
             }
-            // one that nobody writes: it moves the last derivative of a signal that is known
+            // one that no file writes: it moves the last derivative of a known signal
             let is_one = |(_, rate): &(Symbol, NodeId)| {
                 system.graph.constant_value(*rate).is_some_and(|rate| *rate == RBig::ONE)
             };

@@ -16,7 +16,7 @@ pub struct Exported {
     pub text: String,
     /// The claims whose statement is a theorem in it, by their ids.
     pub claims: Vec<String>,
-    /// The claims on a rank of which it is a theorem that the rank is reached at a state, and none that it is not exceeded.
+    /// The claims on a rank for which a theorem says that a state reaches the rank, but none that no state exceeds it.
     pub reached: Vec<String>,
     /// The claims with a form that a theorem refutes at a state: what is claimed to be refuted, or a form in print.
     pub refuted: Vec<String>,
@@ -24,7 +24,7 @@ pub struct Exported {
     pub left_out: Vec<NoTheorem>,
 }
 
-/// A claim that is no theorem.
+/// A claim without a theorem.
 pub struct NoTheorem {
     /// Its id.
     pub id: String,
@@ -32,13 +32,13 @@ pub struct NoTheorem {
     pub reason: String,
 }
 
-/// The theorems of a file, of those of its claims that are `wanted`: that a claim is proved is for others to say. What the library is not
-/// expected to prove, or not in time, is left out. Forms that are wrong are refuted at a state in exact numbers, where one is found.
+/// The theorems for those claims of a file that are `wanted`; whether a claim is proved is decided elsewhere. What the library is not
+/// expected to prove, or not in time, is left out. Wrong forms are refuted at a state in exact numbers, where one is found.
 pub fn exported(system: &System, wanted: &dyn Fn(&str) -> Result<(), String>) -> Exported {
     written(system, wanted, true)
 }
 
-/// The same without what is said at states, and whether or not it is to be expected that the library proves it.
+/// The same without statements at states, and whether or not the library is expected to prove them.
 pub fn stated(system: &System, wanted: &dyn Fn(&str) -> Result<(), String>) -> Exported {
     written(system, wanted, false)
 }

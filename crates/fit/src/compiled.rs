@@ -158,7 +158,7 @@ pub(super) struct Sloped {
 
 impl Sloped {
     /// # Errors
-    /// The name of a symbol of which nothing is known.
+    /// The name of a symbol without a meaning.
     pub fn new(system: &mut System, nodes: &[NodeId], names: &Names) -> Result<Sloped, String> {
         let values = Formulas::new(system, nodes, names)?;
         let mut derivatives = Vec::new();
@@ -191,9 +191,9 @@ impl Sloped {
 #[derive(Clone, Debug)]
 pub(super) struct CompiledPhase {
     pub rates: Sloped,
-    /// The starts that are given.
+    /// The initial states that are given.
     pub start: Sloped,
-    /// Of each state the row of its start, where it is given.
+    /// For each state the row of its initial value, where it is given.
     pub given: Vec<Option<usize>>,
     /// What is zero where a rate has a kink or a jump at some time: formulas of time and parameters.
     pub switches: Sloped,
@@ -203,7 +203,7 @@ pub(super) struct CompiledPhase {
 
 impl CompiledPhase {
     /// # Errors
-    /// The name of a symbol of which nothing is known.
+    /// The name of a symbol without a meaning.
     pub fn new(
         system: &mut System,
         phase: &Phase,
@@ -230,7 +230,7 @@ impl CompiledPhase {
     }
 }
 
-/// What absolute values and signs are taken of, where that hangs on time and on parameters alone.
+/// The arguments of absolute values and signs that depend on time and parameters alone.
 fn switches(system: &System, rates: &[NodeId], names: &Names, clock: Option<usize>) -> Vec<NodeId> {
     let Some(time) = clock.map(|clock| names.states[clock]) else { return Vec::new() };
     let graph = &system.graph;

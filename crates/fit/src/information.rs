@@ -1,9 +1,9 @@
-//! What the measurements tell of which parameter, from the information that is expected at the best parameters.
+//! How well the measurements determine each parameter, from the expected information at the best parameters.
 
 use super::likelihood::SimulatedExperiments;
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// Of a direction whose information is below this part of the largest nothing is told but by rounding.
+/// A direction whose information is below this part of the largest counts as undetermined: it is rounding.
 const ROUNDING: f64 = 1e-13;
 
 /// The eigenvalues take no more sweeps than these.
@@ -15,18 +15,18 @@ const PART: f64 = 0.1;
 /// A direction in the space of the parameters on their scales, and how badly it is known.
 #[derive(Clone, Debug)]
 pub struct WeakDirection {
-    /// Its standard deviation: what a step of one unit along it would be known by; infinite where nothing tells it.
+    /// Its standard deviation along a step of one unit; infinite where no measurement determines it.
     pub deviation: f64,
     /// The parameters that take part, by their places, largest first, with their parts.
     pub parts: Vec<(usize, f64)>,
 }
 
-/// What is told of parameters that are not held by their bounds.
+/// What is known of the parameters that are not at their bounds.
 #[derive(Clone, Debug)]
 pub struct Information {
-    /// The standard deviation of each parameter on its scale; infinite where nothing tells it, none where it lies at a bound.
+    /// The standard deviation of each parameter on its scale; infinite where it is undetermined, none where it lies at a bound.
     pub deviations: Vec<Option<f64>>,
-    /// The covariance of those that lie at no bound, where all are told.
+    /// The covariance of those that lie at no bound, where all are determined.
     pub covariance: Option<DMatrix<f64>>,
     /// The directions, the worst known first.
     pub directions: Vec<WeakDirection>,
@@ -43,7 +43,7 @@ impl Information {
             return Information { deviations, covariance: None, directions: Vec::new() };
         }
         let Some(eigen) = SymmetricEigen::try_new(own, f64::EPSILON, MOST_ITERATIONS) else {
-            // what is not known to be told is not
+            // without eigenvalues no parameter counts as determined
             free.iter().for_each(|place| deviations[*place] = Some(f64::INFINITY));
             return Information { deviations, covariance: None, directions: Vec::new() };
         };
@@ -53,7 +53,7 @@ impl Information {
             let mut variance = 0.0;
             for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
                 let part = vector[i] * vector[i];
-                // a part that is rounding tells nothing against the parameter
+                // a part that is rounding does not make the parameter undetermined
                 variance += match is_told(*value) {
                     true => part / value,
                     false if part > 1e-6 => f64::INFINITY,

@@ -1,8 +1,8 @@
-//! How errors are distributed, on which scale parameters are sought, and what is believed of them before anything is measured.
+//! How errors are distributed, on which scale parameters are estimated, and their priors.
 
 use std::f64::consts::{LN_10, TAU};
 
-/// On which scale a parameter is sought.
+/// On which scale a parameter is estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterScale {
     /// As it is.
@@ -14,7 +14,7 @@ pub enum ParameterScale {
 }
 
 impl ParameterScale {
-    /// The word for it in a scene.
+    /// Its name in a scene.
     pub fn word(self) -> &'static str {
         match self {
             ParameterScale::Linear => "linear",
@@ -63,7 +63,7 @@ pub enum ErrorScale {
 }
 
 impl ErrorScale {
-    /// The word for it in a scene.
+    /// Its name in a scene.
     pub fn word(self) -> &'static str {
         match self {
             ErrorScale::Linear => "linear",
@@ -113,7 +113,7 @@ pub(crate) struct Term {
 }
 
 impl ErrorLaw {
-    /// The word for it in a scene.
+    /// Its name in a scene.
     pub fn word(self) -> &'static str {
         match self {
             ErrorLaw::Normal => "normal",

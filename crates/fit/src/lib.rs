@@ -1,8 +1,8 @@
-//! Several experiments explained by one set of parameters: simulation with exact derivatives, maximum likelihood, what the measurements tell.
+//! Several experiments explained by one set of parameters: simulation with exact derivatives, maximum likelihood, identifiability.
 //!
 //! A [`JointProblem`] is experiments (rates and initial states under their own settings), measurements with the law of their errors, and the parameters that
-//! are sought. [`Likelihood`] simulates it at some parameters, stiff or not, with its sensitivities; [`fit`] searches the largest likelihood from
-//! many starts; [`Information`] says what the measurements tell of which parameter, and [`profile`] how far each could be moved.
+//! are estimated. [`Likelihood`] simulates it at some parameters, stiff or not, with its sensitivities; [`fit`] searches the largest likelihood from
+//! many starts; [`Information`] says how well the measurements determine each parameter, and [`profile`] how far each could be moved.
 //!
 //! This floor knows systems and numbers; it knows neither scenes nor files.
 

@@ -11,9 +11,9 @@ use std::collections::HashMap;
 struct CompiledExperiment {
     before: Option<CompiledPhase>,
     phase: CompiledPhase,
-    /// When is measured, increasing; without the measurements at rest.
+    /// The times of measurement, increasing; without the measurements at steady state.
     times: Vec<f64>,
-    /// Whether something is measured at rest.
+    /// Whether something is measured at steady state.
     rests: bool,
 }
 
@@ -21,7 +21,7 @@ struct CompiledExperiment {
 struct CompiledMeasurement {
     /// The place of its formulas.
     formula: usize,
-    /// The place among the times of its experiment; none at rest.
+    /// The place among the times of its experiment; none at steady state.
     moment: Option<usize>,
 }
 
@@ -101,7 +101,7 @@ impl Likelihood {
         Ok(Likelihood { problem, experiments, formulas, measurements })
     }
 
-    /// What is asked.
+    /// The problem.
     pub fn problem(&self) -> &JointProblem {
         &self.problem
     }

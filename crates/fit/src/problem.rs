@@ -1,25 +1,25 @@
-//! Experiments, measurements and the parameters that are sought.
+//! Experiments, measurements and the parameters that are estimated.
 
 use super::laws::{ErrorLaw, ErrorScale, ParameterScale, Prior};
 use palmistry_lang::System;
 use palmistry_math::expression::{NodeId, Symbol};
 
-/// A parameter that is sought.
+/// A parameter that is estimated.
 #[derive(Clone, Debug)]
 pub struct SoughtParameter {
     /// Its name.
     pub name: String,
     /// What stands for it in formulas.
     pub symbol: Symbol,
-    /// On which scale it is sought.
+    /// On which scale it is estimated.
     pub scale: ParameterScale,
-    /// Between which values.
+    /// The least and the greatest value.
     pub bounds: [f64; 2],
-    /// Between which values searches begin; its bounds unless given.
+    /// The range of its initial guesses; its bounds unless given.
     pub starts: Option<[f64; 2]>,
-    /// A value that somebody published, or begins with.
+    /// A published value, or an initial guess.
     pub nominal: Option<f64>,
-    /// What is believed of it before anything is measured.
+    /// Its prior.
     pub prior: Option<Prior>,
 }
 
@@ -33,9 +33,10 @@ impl SoughtParameter {
 /// A time during which one set of rates holds.
 #[derive(Clone, Debug)]
 pub struct Phase {
-    /// The rate of each state, by states and parameters that are sought.
+    /// The rate of each state, by states and estimated parameters.
     pub rates: Vec<NodeId>,
-    /// The state at the start, by parameters; what is none is as the phase before has left it.
+    /// The state at the start, by parameters; an entry that is none keeps the value from the end of the phase
+    /// before.
     pub start: Vec<Option<NodeId>>,
 }
 
@@ -44,9 +45,9 @@ pub struct Phase {
 pub struct JointExperiment {
     /// Its name.
     pub name: String,
-    /// What goes on until nothing changes any more, before the experiment.
+    /// What happens before the experiment, until the steady state.
     pub before: Option<Phase>,
-    /// What goes on while it is measured, from time zero.
+    /// What happens while it is measured, from time zero.
     pub phase: Phase,
 }
 
@@ -57,7 +58,7 @@ pub struct JointMeasurement {
     pub experiment: usize,
     /// The name of what is measured.
     pub output: String,
-    /// When, in the unit of the rates; infinite of what is measured where nothing changes any more.
+    /// When, in the unit of the rates; infinite for a measurement at steady state.
     pub time: f64,
     /// What was measured.
     pub value: f64,
@@ -80,7 +81,7 @@ pub struct JointProblem {
     pub states: Vec<Symbol>,
     /// The place of the state that is time, where there is one: it never comes to rest.
     pub clock: Option<usize>,
-    /// What is sought.
+    /// The estimated parameters.
     pub parameters: Vec<SoughtParameter>,
     /// The experiments.
     pub experiments: Vec<JointExperiment>,
@@ -89,7 +90,7 @@ pub struct JointProblem {
 }
 
 impl JointProblem {
-    /// The published values on their scales, where all have one.
+    /// The nominal values on their scales, where all have one.
     pub fn nominal(&self) -> Option<Vec<f64>> {
         self.parameters.iter().map(|one| one.nominal.map(|value| one.scale.scaled(value))).collect()
     }

@@ -10,7 +10,7 @@ use super::simulate::Exactness;
 /// By how much the logarithm of the likelihood may fall within an interval of 95 %: half of the quantile of chi-square with one degree of freedom.
 pub const ALLOWED: f64 = 3.841_458_820_694_124 / 2.0;
 
-/// A step along a profile is sought that changes the logarithm of the likelihood by about this.
+/// A step along a profile is chosen to change the logarithm of the likelihood by about this.
 const WANTED: f64 = 0.3;
 
 /// So many points a side at most.
@@ -30,7 +30,7 @@ pub struct ParameterProfile {
     pub interval: [Option<f64>; 2],
     /// Whether a side was cut off before it came to an end.
     pub cut_off: [bool; 2],
-    /// By how much a better optimum was met on the way; zero where none was.
+    /// By how much minus the logarithm of the likelihood was lower at a better optimum on the way; zero where none was met.
     pub better: f64,
 }
 

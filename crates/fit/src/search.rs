@@ -17,7 +17,7 @@ const CANDIDATES: usize = 8;
 const KICKS: usize = 10;
 const ROUNDS: usize = 6;
 
-/// So far from it, in decades, or in parts of the range on a linear scale: as standard deviations, one a search.
+/// So far from it, in decades, or as parts of the range on a linear scale: as standard deviations, one a search.
 const KICK: [f64; 2] = [0.3, 1.0];
 
 /// So many draws are tried at most.
@@ -40,7 +40,7 @@ pub enum StartEnd {
     Stuck,
     /// No start could be simulated; why the last could not.
     NoStart(String),
-    /// Somebody wanted an end.
+    /// It was interrupted.
     Interrupted,
 }
 
@@ -238,7 +238,7 @@ fn ended(start: Vec<f64>, end: StartEnd) -> SearchEnd {
     SearchEnd { found: start.clone(), start, objective: f64::INFINITY, steps: 0, end }
 }
 
-/// A search from a start whose simulation is known, with some parameters held at their places.
+/// A search from a start whose simulation is known, with some parameters fixed at their places.
 pub(super) fn search(
     likelihood: &Likelihood,
     start: &[f64],

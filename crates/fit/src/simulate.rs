@@ -2,7 +2,7 @@
 //!
 //! States and sensitivities are integrated together by an explicit method of order five, and where that takes too many steps by formulas of backward differentiation,
 //! which stay stable where rates differ by many orders of magnitude (both of the crate diffsol); the derivatives of the rates are exact. Which is
-//! used hangs on nothing but the experiment and the parameters.
+//! used depends on the experiment and the parameters alone.
 
 use super::compiled::{CompiledPhase, Room};
 use diffsol::error::DiffsolError;
@@ -12,7 +12,7 @@ use diffsol::{
 use nalgebra::{DMatrix, DVector};
 use std::cell::RefCell;
 
-/// How exactly is followed.
+/// How exactly the states are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exactness {
     /// For searches, which compare what is far from the answer.
@@ -40,13 +40,13 @@ impl Exactness {
     }
 }
 
-/// What is below this is nothing to a state at rest.
+/// Added to the size of a state in the test for a steady state.
 const LEAST: f64 = 1e-3;
 
 /// So many steps are made in an experiment at most.
 const MOST_STEPS: usize = 20_000;
 
-/// A state is at rest that is nearer to its rest than this part of it, and whose rate changes it by less than this part in the time that has passed.
+/// A state is steady that is nearer to its steady value than this part of it, and whose rate changes it by less than this part in the time that has passed.
 const AT_REST: f64 = 1e-8;
 
 /// Singular values of the Jacobian matrix below this part of the largest belong to what is conserved.
@@ -58,7 +58,7 @@ const MOST_ITERATIONS: usize = 10_000;
 /// The shortest step, whatever the unit of time is; one that does not move time is none either.
 const SHORTEST: f64 = 1e-30;
 
-/// Where nothing has come to rest by then, it is said.
+/// Where no steady state is reached by then, that is an error.
 const LONGEST: f64 = 1e12;
 
 /// So far on either side of a kink rates are looked at: at the kink itself signs have no value.
@@ -91,7 +91,7 @@ pub enum NotFollowed {
         /// When.
         time: f64,
     },
-    /// Somebody wanted an end.
+    /// It was interrupted.
     #[error("interrupted")]
     Interrupted,
 }
@@ -180,7 +180,7 @@ impl CompiledPhase {
         found
     }
 
-    /// Follows from a start at time zero: the moments at increasing times, and where `rests` is asked for the one at which all but the clock has come to rest.
+    /// Follows from a start at time zero: the moments at increasing times, and where `rests` is set the steady state of all but the clock.
     /// Where rates have a kink or a jump at a time that is known, steps end there; how the time of a jump moves with the parameters is in
     /// the derivatives.
     ///
@@ -334,7 +334,7 @@ impl CompiledPhase {
             }
             sums.into_iter().fold(0.0, f64::max)
         };
-        // by Newton's step, the shortest one where something is conserved: how far each state is from rest
+        // by Newton's step, the shortest one where something is conserved: how far each state is from its steady value
         let distance = |x: &[f64], rates: &[f64]| -> Option<DVector<f64>> {
             differentiate(x);
             let mut jacobian = DMatrix::zeros(n, n);
@@ -405,7 +405,7 @@ const STABLE: f64 = 1.0;
 /// Rates at states, parameters and a time.
 type Rate<'r> = dyn Fn(&[f64], &[f64], f64, &mut [f64]) + 'r;
 
-/// How far states with these rates are from rest.
+/// How far states with these rates are from the steady state.
 type Distance<'d> = dyn Fn(&[f64], &[f64]) -> Option<DVector<f64>> + 'd;
 
 /// A norm of the Jacobian matrix at states.
@@ -426,7 +426,7 @@ struct Way<'w> {
 }
 
 impl Way<'_> {
-    /// Goes through all times, and to rest where that is asked for.
+    /// Goes through all times, and to the steady state where that is asked for.
     fn go<'s, E, S>(
         &self,
         solver: &mut S,
@@ -476,16 +476,16 @@ impl Way<'_> {
                 let is_nothing = |state: usize, change: f64| {
                     Some(state) == clock || change.abs() <= AT_REST * (states[state].abs() + LEAST)
                 };
-                // after a short time any rate has changed little: what is left to go counts
-                let is_at_rest = (0..states.len()).all(|state| is_nothing(state, rates[state] * time))
+                // after a short time any rate has changed little: the distance to the steady state counts
+                let is_constant_state = (0..states.len()).all(|state| is_nothing(state, rates[state] * time))
                     && (self.distance)(&states, &rates).is_some_and(|distance| {
                         (0..states.len()).all(|state| is_nothing(state, distance[state]))
                     });
-                if is_at_rest {
+                if is_constant_state {
                     let moment = self.moment(solver, time)?;
                     return Ok((found, Some(moment)));
                 }
-                // towards rest steps grow for ever, and an explicit method's do not
+                // towards a steady state steps grow for ever, and an explicit method's do not
                 if norm.is_some() && step >= EASY / 4 {
                     return Err(Stopped::Stiff);
                 }

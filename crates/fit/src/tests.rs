@@ -1,4 +1,4 @@
-//! Held to closed forms, to published values of a stiff system, to differences, and to normal equations.
+//! Checked against closed forms, published values of a stiff system, differences, and normal equations.
 
 use super::laws::Term;
 use super::*;
@@ -184,7 +184,7 @@ fn a_stiff_system_is_followed_with_its_derivatives() {
     }
 }
 
-/// At rest before the experiment, and measured at rest behind it, with the derivatives of both.
+/// At steady state before the experiment, and measured at steady state behind it, with the derivatives of both.
 #[test]
 fn rest_is_found_with_its_derivatives() {
     let made = Made {
@@ -220,7 +220,7 @@ fn rest_is_found_with_its_derivatives() {
     }
 }
 
-/// A rate that is switched off at a time that is sought: the state and its derivative by that time.
+/// A rate that is switched off at an unknown time: the state and its derivative by that time.
 #[test]
 fn a_jump_moves_with_its_time() {
     let made = Made {
@@ -359,7 +359,7 @@ fn profiles_of_a_line_are_parabolas() {
     }
 }
 
-/// Of a product nothing tells the factors apart: their direction has no end, and what is told stays told.
+/// The factors of a product are not identifiable: their direction has no end, and what is determined stays so.
 #[test]
 fn factors_of_a_product_are_not_told() {
     let rows: Vec<Row<'_>> = (0..5).map(|i| (0, "x", f64::from(i), 1.0, "0.1")).collect();
@@ -382,12 +382,12 @@ fn factors_of_a_product_are_not_told() {
     let parts: Vec<usize> = worst.parts.iter().map(|part| part.0).collect();
     assert_eq!(parts.len(), 2);
     near(worst.parts[0].1 + worst.parts[1].1, 0.0, 1e-6);
-    // what is held by a bound tells the other
+    // one factor fixed at its bound makes the other identifiable
     let held = Information::of(&found, &[true, false, false]);
     assert!(held.deviations[0].is_none() && held.deviations[1].unwrap() < 1.0 && held.covariance.is_some());
 }
 
-/// What is slow is not at rest when something fast is, however little it has moved until then; and what is conserved does not keep a system from resting.
+/// What is slow is not steady when something fast is, however little it has moved until then; and what is conserved does not keep a system from a steady state.
 #[test]
 fn what_is_slow_is_not_at_rest() {
     let made = Made {

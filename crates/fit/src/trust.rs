@@ -8,22 +8,22 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 /// What the solver knows between two steps.
 pub(super) type Iteration = IterState<DVector<f64>, DVector<f64>, (), DMatrix<f64>, (), f64>;
 
-/// The damping of the first step, in parts of the information.
+/// The damping of the first step, relative to the information.
 const FIRST: f64 = 1e-3;
 
 /// The damping beyond which no step is tried any more.
 const STRONGEST: f64 = 1e12;
 
-/// The information of a parameter that is not seen counts as this, in units of its scale.
+/// The information of an undetermined parameter counts as this, in units of its scale.
 const LEAST_INFORMATION: f64 = 1e-12;
 
-/// No parameter goes farther in one step, in decades or units of its logarithm; of one on a linear scale, in parts of its range.
+/// No parameter goes farther in one step, in decades or units of its logarithm; of one on a linear scale, relative to its range.
 const LONGEST: f64 = 1.0;
 
-/// What is searched, with parameters that are held.
+/// What is searched, with some parameters fixed.
 pub(super) struct Search<'l> {
     pub likelihood: &'l Likelihood,
-    /// Between which places of their scales parameters lie; both ends are one of those that are held.
+    /// The bounds of parameters on their scales; both are one where a parameter is fixed.
     pub bounds: Vec<[f64; 2]>,
     /// How exactly is simulated.
     pub exactness: Exactness,
@@ -31,8 +31,8 @@ pub(super) struct Search<'l> {
 }
 
 impl Search<'_> {
-    /// Where the next step promises to raise the logarithm of the likelihood by less than this, the search has come to an end: what differs by one
-    /// can hardly be told apart.
+    /// Where the next step promises to raise the logarithm of the likelihood by less than this, the search has converged: a difference of one
+    /// is hardly significant.
     fn settled(&self) -> f64 {
         match self.exactness {
             Exactness::Search => 1e-5,
@@ -138,7 +138,7 @@ impl Solver<Search<'_>, Iteration> for Scoring {
                 Ok(search.likelihood.at(place.as_slice(), search.exactness, &|| (search.interrupted)())?)
             })?,
         };
-        // what is not seen moves little
+        // an undetermined parameter moves little
         let least = (1e-12 * here.information.diagonal().max()).max(LEAST_INFORMATION);
         self.scales = here.information.diagonal().iter().map(|own| own.max(least)).collect();
         while self.lambda < STRONGEST {
@@ -176,7 +176,7 @@ impl Solver<Search<'_>, Iteration> for Scoring {
                             return Ok((state, None));
                         }
                         if gain <= settled {
-                            // what is left is rounding
+                            // the rest is rounding
                             self.converged = true;
                             break;
                         }

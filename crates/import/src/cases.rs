@@ -33,7 +33,7 @@ struct Writing<'b> {
     budget: &'b Budget,
     taken: BTreeSet<String>,
     count: usize,
-    /// Definitions that have come about, and stand above what is written now.
+    /// Definitions that were made, and are written above what comes next.
     above: Vec<(String, ForeignExpr)>,
     has_sign: bool,
 }
@@ -58,7 +58,7 @@ pub(super) fn written_out(model: &ForeignModel, budget: &Budget) -> Result<Uncas
     for output in &mut found.outputs {
         output.value = writing.whole(&output.value)?;
     }
-    for (_, value) in &mut found.beginnings {
+    for (_, value) in &mut found.initial_values {
         *value = value.as_ref().map(|value| writing.whole(value)).transpose()?;
     }
     found.definitions.append(&mut writing.above);

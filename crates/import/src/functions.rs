@@ -1,4 +1,4 @@
-//! What the functions of other programs are in our language: the same by another name, or made of ours.
+//! The functions of other programs in our language: the same by another name, or made of ours.
 
 use super::expression::{FUNCTIONS, ForeignExpr, ForeignKind, ForeignOrder, Span};
 use dashu::rational::RBig;

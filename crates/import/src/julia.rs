@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 /// A model in a file: where its macro stands, and how it is called.
 struct Found {
-    /// The number of the word `@`.
+    /// The place of the token `@`.
     at: usize,
     name: Option<String>,
     span: Span,

@@ -68,7 +68,7 @@ impl ForeignFormat {
         ForeignFormat::Formulas,
     ];
 
-    /// The word for it on the command line.
+    /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             ForeignFormat::Julia => "julia",
@@ -79,7 +79,7 @@ impl ForeignFormat {
         }
     }
 
-    /// What it is, in a few words, for the citation.
+    /// A short description, for the citation.
     fn in_words(self, text: &str) -> &'static str {
         match self {
             ForeignFormat::Julia if text.contains("@ODEmodel") => "@ODEmodel of StructuralIdentifiability.jl",
@@ -127,7 +127,7 @@ pub struct ImportQuestion {
     pub outputs: Vec<String>,
     /// Which parameters are to be identified.
     pub unknowns: ForeignUnknowns,
-    /// Names that are inputs which are known, and which nobody knows.
+    /// Names that are inputs which are known.
     pub known_inputs: Vec<String>,
     /// Names that are inputs which nobody knows.
     pub unknown_inputs: Vec<String>,
@@ -144,7 +144,7 @@ pub struct ImportedModel {
     pub text: String,
     /// The model in its own names.
     pub model: ForeignModel,
-    /// What is called otherwise in the proof file: foreign names and ours.
+    /// The names that differ in the proof file: foreign names and ours.
     pub renamed: Vec<(String, String)>,
 }
 

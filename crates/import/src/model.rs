@@ -25,7 +25,7 @@ pub struct ForeignConstant {
     pub value: Option<RBig>,
     /// Whether it is to be identified.
     pub is_unknown: bool,
-    /// Whether it is one of those that "all" means: not the size of a compartment, nor a species that is held.
+    /// Whether it is one of those that "all" means: not the size of a compartment, nor a constant species.
     pub may_be_unknown: bool,
 }
 
@@ -43,18 +43,18 @@ pub struct ForeignOutput {
 #[allow(missing_docs)] // the names say it
 pub struct ForeignModel {
     pub title: Option<String>,
-    /// Where it comes from, in the words of the file.
+    /// Where it comes from, as the file says.
     pub source: Option<String>,
     pub states: Vec<ForeignRate>,
-    /// Whether rates are what states are after a step.
+    /// Whether time is discrete: rates are the states after a step.
     pub is_discrete: bool,
     pub definitions: Vec<(String, ForeignExpr)>,
     pub outputs: Vec<ForeignOutput>,
     pub constants: Vec<ForeignConstant>,
     pub known_inputs: Vec<String>,
     pub unknown_inputs: Vec<String>,
-    /// States of which the beginning is known, and what it is.
-    pub beginnings: Vec<(String, Option<ForeignExpr>)>,
+    /// States with a known initial value, and the value where the file gives it.
+    pub initial_values: Vec<(String, Option<ForeignExpr>)>,
     /// The state that is time, where the equations name it: it is measured whatever else is.
     pub clock: Option<String>,
     /// What a reader of the new file has to know, a sentence each.
@@ -126,7 +126,7 @@ impl ForeignModel {
         };
         let mut wanted: Vec<usize> = self.states.iter().flat_map(|state| used(&state.rate)).collect();
         wanted.extend(self.outputs.iter().flat_map(|output| used(&output.value)));
-        wanted.extend(self.beginnings.iter().filter_map(|(_, value)| value.as_ref()).flat_map(used));
+        wanted.extend(self.initial_values.iter().filter_map(|(_, value)| value.as_ref()).flat_map(used));
         let needs: Vec<Vec<usize>> = self.definitions.iter().map(|(_, value)| used(value)).collect();
         let mut needed = BTreeSet::new();
         while let Some(at) = wanted.pop() {
@@ -177,7 +177,7 @@ impl ForeignModel {
     /// Takes other outputs than the file's: names of states, definitions, outputs, inputs or constants.
     ///
     /// # Errors
-    /// In words: a name that is none, and what may have been meant.
+    /// In words: a name that the model does not have, and the one that may have been meant.
     pub(super) fn choose_outputs(&mut self, names: &[String]) -> Result<(), String> {
         if names.is_empty() {
             return Ok(());
@@ -200,7 +200,7 @@ impl ForeignModel {
     /// Says which constants are to be identified.
     ///
     /// # Errors
-    /// In words: a name that is no constant, and what may have been meant.
+    /// In words: a name that is no constant, and the one that may have been meant.
     pub(super) fn choose_unknowns(&mut self, which: &ForeignUnknowns) -> Result<(), String> {
         if let ForeignUnknowns::These(names) = which {
             let is_one = |name: &&String| !self.constants.iter().any(|constant| constant.name == **name);
@@ -255,7 +255,7 @@ impl ForeignModel {
             constants: self.constants.clone(),
             known_inputs: self.known_inputs.clone(),
             unknown_inputs: self.unknown_inputs.clone(),
-            beginnings: self.beginnings.clone(),
+            initial_values: self.initial_values.clone(),
             clock: self.clock.clone(),
             remarks: self.remarks.clone(),
         }

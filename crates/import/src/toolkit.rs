@@ -290,7 +290,7 @@ fn equations(words: &[Token]) -> Result<Vec<Equations>, Problem> {
     Ok(lists)
 }
 
-/// Whether a word stands in `@equations begin ... end`.
+/// Whether a token stands in `@equations begin ... end`.
 fn within_block(words: &[Token], at: usize) -> bool {
     let begin = words[..at].iter().rposition(|word| word.is_word("equations"));
     begin.is_some_and(|begin| !words[begin..at].iter().any(|word| word.is_word("end")))

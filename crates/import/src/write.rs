@@ -107,7 +107,7 @@ fn constants(
     Ok(())
 }
 
-/// Writes a model. `origin` says in a few words what was imported, and goes into the citation.
+/// Writes a model. `origin` says briefly what was imported, and goes into the citation.
 pub(super) fn proof_text(model: &ForeignModel, origin: &str, budget: &Budget) -> Result<ProofText, Problem> {
     let Uncased { model, has_sign } = &written_out(model, budget)?;
     let mut all = model.all_names();
@@ -166,7 +166,7 @@ pub(super) fn proof_text(model: &ForeignModel, origin: &str, budget: &Budget) ->
     }
     out.push('\n');
     outputs(&mut out, model, &names, budget)?;
-    for (name, value) in &model.beginnings {
+    for (name, value) in &model.initial_values {
         let what = match value {
             Some(value) => format!("initial {} = {}", names.ours(name), text(value, &names, budget)?),
             None => format!("initial {} known", names.ours(name)),

@@ -43,7 +43,7 @@ impl SymbolBounds {
         Interval::new(low, high.max(low))
     }
 
-    /// The sign that the ends tell.
+    /// The sign that the ends determine.
     fn sign(&self) -> Option<Sign> {
         let end = |bound: &Option<Bound>, upward: bool| {
             let bound = bound.as_ref()?;
@@ -190,7 +190,7 @@ fn product(graph: &mut Graph, a: Line, b: Line) -> Option<Line> {
     Some(Line { slope, rest: graph.mul(line.rest, factor.rest) })
 }
 
-/// What inequalities tell of the signs of expressions: of symbols by their bounds, of others by their names.
+/// Signs of expressions that follow from inequalities: of symbols by their bounds, of others by name.
 pub fn known_signs(graph: &mut Graph, assumed: &[Guard], bounds: &Bounds) -> HashMap<NodeId, Sign> {
     let mut known = HashMap::new();
     for guard in assumed {

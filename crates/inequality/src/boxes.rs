@@ -30,7 +30,7 @@ const FAR: f64 = 1e9;
 /// The bits with which a corner is looked at.
 const CORNER_BITS: usize = 256;
 
-/// What is asked.
+/// A question for the search.
 pub struct Question<'q> {
     /// What is to hold.
     pub goal: Guard,
@@ -306,7 +306,7 @@ impl Search<'_> {
         self.symbols.iter().zip(sides).zip(middle).map(one).collect()
     }
 
-    /// The goal on the faces on which its least value lies, where slopes tell them.
+    /// The goal on the faces on which its least value lies, where slopes determine them.
     fn on_faces(&mut self, graph: &mut Graph, sides: &[Interval], slopes: &[Interval]) -> Option<Face> {
         let mut faces = sides.to_vec();
         let mut moved = false;
@@ -432,7 +432,7 @@ impl Search<'_> {
             };
             let weight = if side.width().is_finite() { weights[place] } else { f64::INFINITY };
             let weight = if weight.is_nan() { f64::INFINITY } else { weight };
-            // a coordinate that the goal does not depend on may still tell where something exists
+            // a coordinate that the goal does not depend on may still decide where something exists
             if best.is_none_or(|(w, r, ..)| (weight, relative) > (w, r)) {
                 best = Some((weight, relative, place, cut));
             }

@@ -24,7 +24,7 @@ struct Signs {
     not_zero: Vec<Polynomial>,
 }
 
-/// Whether factors tell that a goal holds, wherever it exists, what is assumed holds and the equations' left sides vanish.
+/// Whether the signs of factors show that a goal holds wherever it exists, the assumptions hold and the equations' left sides vanish.
 pub fn tell(
     graph: &mut Graph,
     goal: Guard,

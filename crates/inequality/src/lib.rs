@@ -54,14 +54,14 @@ struct Premises<'g> {
     equations: &'g [NodeId],
 }
 
-/// What was read off the premises.
+/// What follows from the premises alone.
 #[derive(Clone, Copy, Debug)]
 struct Known<'k> {
     bounds: &'k Bounds,
     signs: &'k HashMap<NodeId, Sign>,
 }
 
-/// What a goal came to.
+/// The result for a goal.
 #[derive(Clone, Debug)]
 pub enum InequalityAnswer {
     /// It holds wherever it exists and what is given holds; by this argument.
@@ -136,7 +136,7 @@ pub fn decide(
     }
 }
 
-/// Whether signs and sums of squares alone tell that a goal holds.
+/// Whether signs and sums of squares alone show that a goal holds.
 pub fn holds_by_signs(
     graph: &mut Graph,
     goal: Guard,
@@ -206,7 +206,7 @@ fn tells(need: Need, sign: Sign) -> bool {
     }
 }
 
-/// Whether signs tell that a goal holds.
+/// Whether signs show that a goal holds.
 fn by_signs(
     graph: &mut Graph,
     goal: Guard,

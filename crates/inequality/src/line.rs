@@ -269,7 +269,7 @@ impl Line {
         }
         let all = square_free(&all);
         let mut roots = real_roots(&all);
-        // an end that a zero shares with the next one, or that is a zero itself, leaves no room between them
+        // an end that a zero shares with the next one, or that is a zero itself, has no room between them
         for k in 1..roots.len() {
             while roots[k - 1].high >= roots[k].low {
                 roots[k - 1].halve(&all);

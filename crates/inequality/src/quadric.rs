@@ -1,4 +1,4 @@
-//! Polynomials of degree two in any number of symbols: whether one is nowhere negative its matrix tells, and where it is, or has its least
+//! Polynomials of degree two in any number of symbols: whether one is nowhere negative its matrix decides, and where it is, or has its least
 //! value, follows from elimination. Everything is exact.
 //!
 //! `q(x) = x' A x + 2 b' x + c` is bounded below where `A` is positive semidefinite and `b` lies in its range; its least value is then that at

@@ -22,7 +22,7 @@ const MOST_UNKNOWNS: usize = 160;
 /// Of so many assumptions products of two are used as well.
 const PAIRED: usize = 3;
 
-/// What a sum of squares tells of a polynomial.
+/// The sign of a polynomial that a sum of squares proves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProvedSign {
     NotNegative,
@@ -335,7 +335,7 @@ fn are_semidefinite(parts: &[Part], entries: &[RBig]) -> Option<bool> {
     Some(strict)
 }
 
-/// What exact elimination tells of a symmetric matrix.
+/// The definiteness of a symmetric matrix, by exact elimination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Definiteness {
     /// It is not positive semidefinite.

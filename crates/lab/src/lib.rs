@@ -1,6 +1,6 @@
-//! The lab: a page in a browser on this machine, in which one writes a system and sees what can be told of it.
+//! The lab: a page in a browser on this machine, in which you write a system and see what can be computed of it.
 //!
-//! Two halves that know each other by lines of JSON alone. The server ([`LabServer`]) hands out the page and passes questions on; it reads
+//! Its two halves exchange lines of JSON alone. The server ([`LabServer`]) hands out the page and passes questions on; it reads
 //! no proof file and decides nothing. Each question goes to a process of its own ([`answer`]), with a limit of time and of memory: what
 //! a text can do to that process it does to no other, and to stop a question is to end its process.
 
@@ -12,16 +12,16 @@ mod server;
 pub use answer::answer;
 pub use server::{Access, LabError, LabOptions, LabServer, QuestionLimits};
 
-/// Opens an address in the browser of whoever sits here.
+/// Opens an address in the user's browser.
 ///
 /// # Errors
-/// There is none, or nothing that knows it.
+/// There is no browser, or it cannot be started.
 pub fn open_in_browser(url: &str) -> std::io::Result<()> {
     open::that_detached(url)
 }
 
-/// From now on this process, and each that it starts, takes no more memory (bytes) and processor time (s) than this. What the system
-/// does not limit stays unlimited; the server's clock is there all the same.
+/// Limits this process, and each that it starts, to so much memory (bytes) and processor time (s). What the system does not limit stays
+/// unlimited; the server's clock is there all the same.
 #[cfg(unix)]
 pub fn limit_this_process(memory: Option<u64>, seconds: Option<u64>) {
     use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};

@@ -208,7 +208,7 @@ export class Answers {
             parts.push(element("div", { class: "wide" }, element("table", { class: "unknowns" },
                 element("thead", {}, element("tr", {}, heads.map(head => element("th", {}, head)))), element("tbody", {}, rows))));
             const { fields = [], fields_missing, functions = [], functions_missing, for_all_parameters: forAll } = unobservable[place] ?? {};
-            const held = Object.entries(branch.held_at_the_files_values ?? {}).map(([name, value]) => `${name} = ${value}`).join(", ");
+            const held = Object.entries(branch.fixed_at_the_files_values ?? {}).map(([name, value]) => `${name} = ${value}`).join(", ");
             if (held) parts.push(element("p", { class: "hint", id: "held" }, `at the values in the file: ${held}`));
             if (fields.length || fields_missing) {
                 parts.push(element("h2", {}, "Unobservable directions"));

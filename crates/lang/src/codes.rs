@@ -7,6 +7,11 @@ pub const ERRORS: &str = include_str!("errors.md");
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[allow(missing_docs)] // the headings of the page say it
 pub enum Code {
+    Option,
+    Question,
+    Place,
+    Saved,
+    System,
     Syntax,
     File,
     UnknownName,
@@ -42,7 +47,12 @@ pub enum Code {
 
 impl Code {
     /// All of them, with what stands for each in a message.
-    pub const ALL: [(Code, &'static str); 31] = [
+    pub const ALL: [(Code, &'static str); 36] = [
+        (Code::Option, "E001"),
+        (Code::Question, "E002"),
+        (Code::Place, "E003"),
+        (Code::Saved, "E004"),
+        (Code::System, "E005"),
         (Code::Syntax, "E101"),
         (Code::File, "E102"),
         (Code::UnknownName, "E201"),
@@ -79,6 +89,11 @@ impl Code {
     /// What stands for it in a message: `E201`.
     pub fn id(self) -> &'static str {
         Code::ALL.into_iter().find(|(code, _)| *code == self).map_or("", |(_, id)| id)
+    }
+
+    /// The line that ends a message: which command explains the code.
+    pub fn reference(self) -> String {
+        format!("'palmistry explain {}' has an example", self.id())
     }
 
     /// The code of an id, in capitals or not.

@@ -16,9 +16,12 @@ impl System {
         let comparable = match &values {
             (Value::Matrix(l), Value::Matrix(r)) => (l.rows, l.columns) == (r.rows, r.columns),
             (Value::Matrix(_), _) | (_, Value::Matrix(_)) => false,
-            (Value::Visible { .. }, _) | (_, Value::Visible { .. }) => statement.is_about_what_is_seen(),
+            (Value::Visible { .. }, _) | (_, Value::Visible { .. }) => statement.is_about_observability(),
             (left, right) => left.are_comparable(right),
         };
+        for value in [&values.0, &values.1] {
+            self.refuse_what_is_known(value, statement)?;
+        }
         let of_codistribution = matches!(
             values,
             (Value::CodistributionRank | Value::Visible { .. } | Value::Solutions(_), _)
@@ -73,6 +76,13 @@ impl System {
             let message = "a rank has bounds, as in 2 <= rank <= 3";
             return Err(Problem::new(Code::Statement, &statement.equation.span, message, "this relation"));
         }
+        if (of_a_rank || of_solutions)
+            && let Some(within) = &statement.equation.within
+        {
+            let message = "a rank and a number of solutions are exact";
+            return Err(Problem::new(Code::Statement, &within.span, message, "leave 'within' out")
+                .help("a rank may have bounds, as in 2 <= rank <= 3"));
+        }
         if statement.on_sample && !of_numbers {
             let message = "'on sample' is said of numbers; a rank is the generic one";
             return Err(Problem::new(Code::Statement, &statement.span, message, "this claim"));
@@ -116,6 +126,38 @@ impl System {
                 let message = "'carrying ... digits' is said of a number in print, as in e at {x = 1} = 2.718 carrying 10 digits";
                 return Err(Problem::new(Code::Statement, &statement.span, message, "this claim"));
             }
+        }
+        Ok(())
+    }
+
+    /// A claim that known constants or numbers are observable, identifiable or not, or how many values they have: it would be true or
+    /// false by definition, and is mostly one in which `unknown` was forgotten.
+    fn refuse_what_is_known(&self, value: &Value, statement: &Statement) -> Result<(), Problem> {
+        let (functions, what) = match value {
+            Value::Visible { functions, .. } => (functions.as_slice(), "nothing is to be identified"),
+            Value::Solutions(function) => (std::slice::from_ref(function), "it has its one value"),
+            _ => return Ok(()),
+        };
+        for function in functions {
+            let symbols = self.graph.symbols_of([*function]);
+            if symbols.iter().any(|symbol| self.states.contains(symbol)) {
+                continue;
+            }
+            let span = &statement.equation.span;
+            return Err(match symbols.iter().next() {
+                Some(symbol) => {
+                    let name = self.symbol_name(*symbol);
+                    let message =
+                        format!("'{}' is made of known constants: {what}", self.graph.text(*function));
+                    Problem::new(Code::Statement, span, message, "this claim")
+                        .help(format!("what is to be identified is declared as 'param {name} unknown'"))
+                }
+                None => {
+                    let message = format!("{} is a number: {what}", self.graph.text(*function));
+                    Problem::new(Code::Statement, span, message, "this claim")
+                        .help("the states at which something is claimed stand behind 'where', as in observable(x) where x = 1")
+                }
+            });
         }
         Ok(())
     }

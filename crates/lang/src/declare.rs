@@ -62,7 +62,7 @@ impl System {
         if items.iter().any(|item| matches!(item, Item::Zero(_))) {
             // as many derivatives as there are unknowns: a rank has stopped growing by then
             let unknowns = unknowns_of(items, &derivatives) * count.unwrap_or(1);
-            self.coordinates.longest_word = Some(unknowns);
+            self.coordinates.highest_lie_order = Some(unknowns);
         }
         derivatives
     }
@@ -199,7 +199,7 @@ impl System {
                 order
             }
             None if knowledge == Knowledge::Unknown => used.max(DEFAULT_ORDER),
-            None => used + self.coordinates.longest_word.map_or(0, |longest| longest + 1),
+            None => used + self.coordinates.highest_lie_order.map_or(0, |longest| longest + 1),
         };
         let mut chain = Vec::new();
         for place in 0..=order {
@@ -371,12 +371,12 @@ impl System {
             }
             self.add_field(name, Role::Drift, NOWHERE, chains);
         }
-        if self.longest_word().is_some_and(|longest| longest > MOST_TIED) {
+        if self.highest_lie_order().is_some_and(|longest| longest > MOST_TIED) {
             let message = format!("an output is zero, and there are more than {MOST_TIED} unknowns");
             return Err(Problem::new(Code::ZeroOutput, &(0..0), message, "")
                 .help("write what it says as an output that is measured"));
         }
-        if self.longest_word().is_some() {
+        if self.highest_lie_order().is_some() {
             return match self.fields.iter().find(|field| field.role == Role::Input) {
                 Some(input) => {
                     let message =

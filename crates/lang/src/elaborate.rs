@@ -111,6 +111,11 @@ impl System {
             ExprKind::RealPower(base, exponent) => self.real_power(base, exponent, &expr.span),
             ExprKind::Matrix(rows) => self.blocks(rows, &expr.span),
             ExprKind::At(inner, list) => {
+                if inner.is_literal() {
+                    let message = "'at' belongs to the number before it, which has the same value everywhere";
+                    return Err(Problem::new(Code::Value, &expr.span, message, "only this is taken at the point")
+                        .help("a sum is taken at a point in brackets, as in (x + 3) at {x = 2}; the states of a claim stand behind 'where', as in rank = 3 where x = 0"));
+                }
                 let (value, domain) = self.apart(|system| system.elaborate(inner))?;
                 if matches!(
                     value,
@@ -184,8 +189,8 @@ impl System {
                 let both = graph.substitute(&[expression, factor], assignment);
                 Value::Pole { expression: both[0], factor: both[1] }
             }
-            Value::Visible { functions, is_seen } => {
-                Value::Visible { functions: graph.substitute(&functions, assignment), is_seen }
+            Value::Visible { functions, is_observable } => {
+                Value::Visible { functions: graph.substitute(&functions, assignment), is_observable }
             }
             Value::Solutions(id) => Value::Solutions(graph.substitute(&[id], assignment)[0]),
             Value::CodistributionRank | Value::Infinity => value,

@@ -30,7 +30,7 @@ pub struct ReadError {
 /// What is rendered is the excerpt, and never the text itself.
 impl Diagnostic for ReadError {
     fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        let more = format!("'palmistry explain {}' has an example", self.code.id());
+        let more = self.code.reference();
         Some(Box::new(match &self.help {
             Some(help) => format!("{help}\n{more}"),
             None => more,

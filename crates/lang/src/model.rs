@@ -169,7 +169,7 @@ pub enum Value {
         /// What it is said of.
         functions: Vec<NodeId>,
         /// Whether they are seen.
-        is_seen: bool,
+        is_observable: bool,
     },
     /// `solutions(e)`, how many values of an expression give the same outputs.
     Solutions(NodeId),

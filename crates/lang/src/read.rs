@@ -307,6 +307,16 @@ impl System {
         let taken = declared.is_some_and(|info| info.kind != Kind::Imported)
             || self.definitions.contains_key(&name.text)
             || ["pi", "rank", "others"].contains(&name.text.as_str());
+        if ["known", "unknown", "everywhere", "except", "infinity"].contains(&name.text.as_str()) {
+            let message = format!("'{}' is a word of the language", name.text);
+            let problem = Problem::new(Code::Name, &name.span, message, "choose another name");
+            return Err(match name.text.as_str() {
+                word @ ("known" | "unknown") => problem.help(format!(
+                    "without ',' before it, it says that the constant is {word}, as in param a {word}, b {word}"
+                )),
+                _ => problem,
+            });
+        }
         if taken {
             return Err(Problem::new(
                 Code::Twice,

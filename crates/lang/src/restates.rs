@@ -19,7 +19,7 @@ impl System {
         if !is_one_equation
             || !statement.conditions.is_empty()
             || statement.except.is_some()
-            || statement.is_about_what_is_seen()
+            || statement.is_about_observability()
             || equation.within.is_some()
         {
             return false;

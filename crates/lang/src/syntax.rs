@@ -157,7 +157,7 @@ impl ClaimBody {
         let is_rank = |side: &Expr| matches!(&side.kind, ExprKind::Name(name) if name == "rank");
         self.statements()
             .iter()
-            .any(|s| is_rank(&s.equation.left) || is_rank(&s.equation.right) || s.is_about_what_is_seen())
+            .any(|s| is_rank(&s.equation.left) || is_rank(&s.equation.right) || s.is_about_observability())
     }
 }
 

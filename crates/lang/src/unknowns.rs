@@ -61,7 +61,7 @@ pub(crate) struct Coordinates {
     /// The outputs that are zero.
     pub zero_outputs: Vec<NodeId>,
     /// How long words may be where there are such: known signals have derivatives up to there.
-    pub longest_word: Option<usize>,
+    pub highest_lie_order: Option<usize>,
     /// How many experiments are made beside the first one.
     pub further_experiments: usize,
     /// Whether the file has said so.
@@ -164,8 +164,8 @@ impl System {
     }
 
     /// How long words may be, where known signals have derivatives up to an order only since outputs tie them.
-    pub fn longest_word(&self) -> Option<usize> {
-        self.coordinates.longest_word
+    pub fn highest_lie_order(&self) -> Option<usize> {
+        self.coordinates.highest_lie_order
     }
 
     /// The how manieth derivative of a signal a symbol is.
@@ -183,7 +183,7 @@ impl System {
     /// Whether a symbol is the last derivative that is taken of a signal that outputs tie: its rate is nothing that is known.
     pub fn is_cut_off(&self, symbol: Symbol) -> bool {
         let last = |signal: &Signal| signal.is_known && signal.chain.last() == Some(&symbol);
-        self.longest_word().is_some() && self.coordinates.signals.iter().any(last)
+        self.highest_lie_order().is_some() && self.coordinates.signals.iter().any(last)
     }
 
     /// What is assumed of unknown signals: that a derivative vanishes, as `w'' = 0`.

@@ -23,7 +23,7 @@ pub(super) const VISIBLE: [(&str, bool, bool); 4] = [
 
 impl Statement {
     /// Whether it says of functions that they are seen, or that they are not: then both sides of its equation are the whole.
-    pub fn is_about_what_is_seen(&self) -> bool {
+    pub fn is_about_observability(&self) -> bool {
         is_visible(&self.equation.left) && self.equation.left.span == self.equation.right.span
     }
 }
@@ -62,7 +62,7 @@ impl System {
     /// The meaning of one of these statements: the functions that it names, the components of vectors one by one.
     pub(super) fn visible(
         &mut self,
-        (word, is_seen, of_constants): (&str, bool, bool),
+        (word, is_observable, of_constants): (&str, bool, bool),
         arguments: &[Expr],
         span: &Span,
     ) -> Result<Value, Problem> {
@@ -80,7 +80,7 @@ impl System {
             let mentioned = self.graph.symbols_of(found.iter().copied());
             if of_constants && let Some(moves) = mentioned.into_iter().find(|symbol| self.is_moved(*symbol)) {
                 let moves = self.symbol_name(moves).to_owned();
-                let other = if is_seen { "observable" } else { "unobservable" };
+                let other = if is_observable { "observable" } else { "unobservable" };
                 let message = format!("'{word}' is said of constants, and '{moves}' moves");
                 return Err(Problem::new(Code::Statement, &argument.span, message, "this")
                     .help(format!("write '{other}'")));
@@ -95,7 +95,7 @@ impl System {
                 "here",
             ));
         }
-        Ok(Value::Visible { functions, is_seen })
+        Ok(Value::Visible { functions, is_observable })
     }
 
     /// Whether some field changes a symbol.

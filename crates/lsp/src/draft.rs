@@ -10,7 +10,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::rc::Rc;
 
-/// A text on which somebody is at work. Places are lines and units of UTF-16, as in the Language Server Protocol.
+/// A text that is being edited. Places are lines and units of UTF-16, as in the Language Server Protocol.
 pub struct Draft {
     source: Rc<Source>,
     library: Library,

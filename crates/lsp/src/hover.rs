@@ -1,4 +1,4 @@
-//! What is told of a name: its kind, what is known of it, and the line that declares it.
+//! The hover of a name: its kind, what is known of it, and the line that declares it.
 
 use super::lookup::Found;
 use super::source::Source;

@@ -35,7 +35,7 @@ use std::time::{Duration, Instant};
 /// A text is read when it has not changed for so long.
 const QUIET: Duration = Duration::from_millis(60);
 
-/// How often it is looked whether to stop.
+/// How often the server checks whether to stop.
 const PAUSE: Duration = Duration::from_millis(200);
 
 /// How a session ended.
@@ -170,7 +170,7 @@ impl Server<'_> {
         true
     }
 
-    /// Reads the texts that have changed, and tells what is wrong with them.
+    /// Reads the texts that have changed, and publishes what is wrong with them.
     fn read_changed(&mut self) {
         for uri in std::mem::take(&mut self.changed) {
             self.read(&uri);

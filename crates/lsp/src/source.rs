@@ -58,7 +58,7 @@ impl Source {
         self.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""))
     }
 
-    /// The name under which it is read, and told of.
+    /// The name under which it is read and reported.
     pub fn name(&self) -> String {
         self.path.as_ref().map_or_else(|| self.uri.clone(), |path| name_of(path))
     }

@@ -1,4 +1,4 @@
-//! One attempt in one window: whether something is seen, the search, and what its end is worth.
+//! One attempt in one window: whether the unknowns are observable, the search, and what its end is worth.
 
 use super::fit::{NoiseFrom, Residuals};
 use super::task::Task;
@@ -13,11 +13,12 @@ use std::time::Instant;
 /// With a robust loss so many times the steps are allowed.
 const ROBUST: u64 = 8;
 
-/// What was found is a size of its own where it is so many of its deviations or more.
+/// An estimate of so many of its standard deviations or more sets a size of its own.
 const SIGNIFICANT: f64 = 3.0;
 
 impl MovingWindow {
-    /// An attempt in a window; what it begins with, within its bounds, stays believed where there is no answer. With the differences of what was found.
+    /// An attempt in a window; the state that it begins with, moved within its bounds, stays believed where there is no answer. With the differences at the
+    /// estimate.
     pub(super) fn attempt_in(&self, task: &Task<'_>, window: &Window<'_>) -> (Update, Option<DVector<f64>>) {
         let begin = Instant::now();
         let mut left = None;
@@ -49,7 +50,7 @@ impl MovingWindow {
             Err(lost) => UpdateEnd::Lost(lost),
             Ok(expansion) => {
                 (update.cost, update.rms_residual) = (expansion.cost, expansion.rms_residual());
-                // where nothing is seen at the guess more may be seen where the search ends
+                // what is unobservable at the guess may be observable where the search ends
                 let blind =
                     self.see(task, task.sigma, window, (&expansion.slopes, &guess), &sizes, &mut update);
                 let (end, found) = self.search(task, window, guess, &sizes, &mut update);
@@ -75,7 +76,7 @@ impl MovingWindow {
         let read = || window.measured.iter().flatten().filter(|value| !value.is_nan());
         let not_counted = window.not_counted();
         let square: f64 = read().map(|value| value * value).sum();
-        // nothing is read of an implicit output: it is as large as what is sought makes its terms
+        // an implicit output is not measured: its size is what the unknowns, at their sizes, make of its terms
         let sizes = Self::sizes(task, window);
         let term = |i: usize| -> f64 {
             expansion.slopes.row(i).iter().zip(&sizes).map(|(slope, size)| (slope * size).powi(2)).sum()
@@ -110,8 +111,8 @@ impl MovingWindow {
         }
     }
 
-    /// Sets the bound; says so where something that is sought is not seen: known no better than its size, which is that of the guess, or what was found
-    /// where that is significant.
+    /// Sets the Cramér-Rao bound; reports an unknown as unobservable whose deviation exceeds `unobservable_above` times its size, which is that
+    /// of the guess, or follows from the estimate where that is significant.
     fn see(
         &self,
         task: &Task<'_>,
@@ -129,13 +130,13 @@ impl MovingWindow {
             if let Some(own) = update.deviations.get_mut(*place) {
                 *own = *deviation;
                 let size = size.max(value.abs() / SIGNIFICANT);
-                blind |= deviation.is_nan() || *deviation > self.blind * size;
+                blind |= deviation.is_nan() || *deviation > self.unobservable_above * size;
             }
         }
         update.condition = bound.condition;
         update.covariance =
             bound.covariance.map(|own| Arc::new(of_all(&own, &window.free, window.start.len())));
-        blind.then_some(UpdateEnd::Blind { weakest: bound.weakest })
+        blind.then_some(UpdateEnd::Unobservable { weakest: bound.weakest })
     }
 
     fn search(
@@ -146,7 +147,7 @@ impl MovingWindow {
         sizes: &[f64],
         update: &mut Update,
     ) -> (UpdateEnd, Option<DVector<f64>>) {
-        // beyond the corner of a robust loss the error is no square: each step leaves a part of the way
+        // beyond the corner of a robust loss the error is no square: each step goes only a part of the way
         let steps = if task.loss == super::Loss::Squares { self.steps } else { ROBUST * self.steps };
         macro_rules! run {
             ($solver:expr) => {
@@ -177,7 +178,7 @@ impl MovingWindow {
         let whole = window.state(found);
         update.estimate = whole[..task.estimated()].to_vec();
         update.outputs = whole[task.estimated()..].to_vec();
-        // the bound belongs to where one is
+        // the Cramér-Rao bound belongs to the estimate, where there is one
         let left = match window.expand(found, Order::First) {
             Err(lost) => return (UpdateEnd::Lost(lost), None),
             Ok(expansion) => {
@@ -189,7 +190,7 @@ impl MovingWindow {
                 let left = window.weighted(expansion.left.clone());
                 update.discounted = left.iter().filter(|value| loss.is_discounted(**value, sigma)).count();
                 let here = (&expansion.slopes, found);
-                // what is left and is no noise says nothing of how well the readings see
+                // a residual that is no noise says nothing of how well the measurements determine the unknowns
                 let is_noise = fit.fits || fit.from != NoiseFrom::Residual;
                 let may_be_blind =
                     is_noise || self.see(task, task.sigma, window, here, sizes, update).is_some();
@@ -214,7 +215,7 @@ impl MovingWindow {
     }
 }
 
-/// The covariance of all that is followed, from that of the unknowns.
+/// The covariance of all followed states, from that of the unknowns.
 fn of_all(unknowns: &DMatrix<f64>, free: &[usize], states: usize) -> DMatrix<f64> {
     let mut all = DMatrix::zeros(states, states);
     for (i, row) in free.iter().enumerate() {

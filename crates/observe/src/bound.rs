@@ -1,27 +1,27 @@
-//! How well a window can see the unknowns at all: the bound of Cramér and Rao.
+//! How well a window can determine the unknowns at all: the Cramér-Rao bound.
 
 use nalgebra::DMatrix;
 
-/// A singular value below this fraction of the largest is noise of the integration: what it belongs to is not seen.
+/// A singular value below this fraction of the largest is noise of the integration: its direction is unobservable.
 const UNSEEN: f64 = 1e-10;
 
 /// The least standard deviations that an unbiased estimate of the unknowns can have, and their covariance.
 ///
-/// For independent normal errors of the readings with the standard deviation `sigma` no unbiased estimate has a smaller
-/// covariance than `sigma^2 (J^T J)^-1`, `J` being the derivatives of the readings by the unknowns.
+/// For independent normal errors of the measurements with the standard deviation `sigma` no unbiased estimate has a smaller
+/// covariance than `sigma^2 (J^T J)^-1`, `J` being the derivatives of the measurements by the unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CramerRaoBound {
-    /// One an unknown, in its unit; infinite where it is not seen.
+    /// One an unknown, in its unit; infinite where it is unobservable.
     pub deviations: Vec<f64>,
     /// The largest singular value of the scaled `J` over the smallest.
     pub condition: f64,
-    /// The covariance; none where something is not seen.
+    /// The covariance; none where a direction is unobservable.
     pub covariance: Option<DMatrix<f64>>,
-    /// The combination of unknowns that is seen worst, of length one, in units of the unknowns' sizes.
+    /// The combination of unknowns that is determined worst, of length one, in units of the unknowns' sizes.
     pub weakest: Vec<f64>,
 }
 
-/// The bound from the derivatives of the readings, a row a reading; `sizes` are the magnitudes of the unknowns, by which
+/// The Cramér-Rao bound from the derivatives of the measurements, a row a measurement; `sizes` are the magnitudes of the unknowns, by which
 /// they are scaled before anything is decomposed.
 pub fn cramer_rao(slopes: &DMatrix<f64>, sigma: f64, sizes: &[f64]) -> CramerRaoBound {
     let p = slopes.ncols();
@@ -53,7 +53,7 @@ pub fn cramer_rao(slopes: &DMatrix<f64>, sigma: f64, sizes: &[f64]) -> CramerRao
         sigma * sigma * sizes[i] * sizes[j] * terms.sum::<f64>()
     };
     let deviation = |i: usize| {
-        // an unknown that has no part in what is not seen is seen all the same
+        // an unknown without a part in the unobservable directions is observable all the same
         let hidden = unobserved.iter().any(|k| directions[(*k, i)].abs() > 1e-6);
         let seen = (0..p).filter(|k| !unobserved.contains(k));
         let square: f64 = seen.map(|k| (directions[(k, i)] / values[k]).powi(2)).sum();
@@ -71,7 +71,7 @@ pub fn cramer_rao(slopes: &DMatrix<f64>, sigma: f64, sizes: &[f64]) -> CramerRao
 mod tests {
     use super::*;
 
-    /// A straight line `a + b t` read at the times -1, 0, 1: var a = sigma^2/3, var b = sigma^2/2, by hand.
+    /// A straight line `a + b t` measured at the times -1, 0, 1: var a = sigma^2/3, var b = sigma^2/2, by hand.
     #[test]
     fn the_bound_of_a_straight_line_is_known() {
         let slopes = DMatrix::from_row_slice(3, 2, &[1.0, -1.0, 1.0, 0.0, 1.0, 1.0]);
@@ -81,7 +81,7 @@ mod tests {
         assert!((bound.covariance.unwrap()[(0, 1)]).abs() < 1e-15);
     }
 
-    /// Two unknowns of which only the sum is read, and a third that is read: the third is seen.
+    /// Two unknowns of which only the sum is measured, and a third that is measured: the third is observable.
     #[test]
     fn what_is_not_seen_has_no_bound() {
         let slopes = DMatrix::from_row_slice(3, 3, &[1.0, 1.0, 0.0, 2.0, 2.0, 0.0, 0.0, 0.0, 1.0]);

@@ -1,25 +1,25 @@
-//! Gains, biases and delays of what is read, sought beside the states: constants of a model, at rest.
+//! Gains, biases and delays of measured columns, estimated beside the states: constants of a model.
 //!
-//! A reading `r` of `x` is `gain x(t - delay) + bias`. Where `x` is followed that is what is expected of it; where it is taken from its column it
-//! is `(r - bias)/gain`. Delays are sought of outputs alone, and have no part in expressions: a flow goes back by them (`late`).
+//! A measurement `r` of `x` is `gain x(t - delay) + bias`. Where `x` is followed that is its expected value; where it is taken from its column it
+//! is `(r - bias)/gain`. Only outputs can have an unknown delay; delays are in no expression: a flow goes back by them (`late`).
 
 use palmistry_lang::{Kind, SymbolInfo, System};
 use palmistry_math::expression::{NodeId, Symbol};
 use std::collections::HashMap;
 
-/// What may be wrong with how a column is read.
+/// What may be wrong with the measurements of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationKind {
-    /// By what the true value is multiplied.
+    /// The factor of the true value.
     Gain,
-    /// What is added.
+    /// What is added to it.
     Bias,
-    /// By how much the reading is late, in s.
+    /// By how much the measurement is late, in s.
     Delay,
 }
 
 impl CalibrationKind {
-    /// The word behind the name of a column.
+    /// The suffix of the column's name.
     pub fn word(self) -> &'static str {
         match self {
             CalibrationKind::Gain => "gain",
@@ -28,7 +28,7 @@ impl CalibrationKind {
         }
     }
 
-    /// Its value of a sensor that is right.
+    /// Its value for a perfect sensor.
     pub fn nominal(self) -> f64 {
         match self {
             CalibrationKind::Gain => 1.0,
@@ -36,7 +36,7 @@ impl CalibrationKind {
         }
     }
 
-    /// The column and the kind of a name such as `tau1.gain`; none of any other.
+    /// The column and the kind of a name such as `tau1.gain`; none of any other name.
     pub fn of(name: &str) -> Option<(&str, CalibrationKind)> {
         let (column, word) = name.split_once('.')?;
         let kinds = [CalibrationKind::Gain, CalibrationKind::Bias, CalibrationKind::Delay];
@@ -45,7 +45,7 @@ impl CalibrationKind {
     }
 }
 
-/// Declares what is sought of the columns' gains, biases and delays as states that no field moves.
+/// Declares the gains, biases and delays that are estimated as states that no field moves.
 pub fn declare(system: &mut System, names: &[String]) {
     for name in names {
         let Some((column, _)) = CalibrationKind::of(name) else { continue };
@@ -59,19 +59,19 @@ pub fn declare(system: &mut System, names: &[String]) {
     }
 }
 
-/// Gain, bias and delay that are sought of a column, as symbols.
+/// The gain, bias and delay of a column that are estimated, as symbols.
 pub struct Sought {
     /// The column.
     pub column: Symbol,
-    /// Its gain, where one is sought.
+    /// Its gain, where one is estimated.
     pub gain: Option<Symbol>,
-    /// Its bias, where one is sought.
+    /// Its bias, where one is estimated.
     pub bias: Option<Symbol>,
-    /// Its delay, where one is sought.
+    /// Its delay, where one is estimated.
     pub delay: Option<Symbol>,
 }
 
-/// What is sought of each column.
+/// What is estimated of each column.
 pub fn sought(system: &System, followed: &[String]) -> Vec<Sought> {
     let mut all: Vec<Sought> = Vec::new();
     for name in followed {
@@ -92,8 +92,8 @@ pub fn sought(system: &System, followed: &[String]) -> Vec<Sought> {
     all
 }
 
-/// Puts what is sought of the columns into rates and outputs: outputs that are followed states are read with gain and bias, and what
-/// stands for a column elsewhere is what was read without them.
+/// Puts the estimated gains, biases and delays into rates and outputs: outputs that are followed states get gain and bias, and elsewhere
+/// a column stands for its measurements with both taken off.
 pub(super) fn put_in(
     system: &mut System,
     followed: &[String],
@@ -123,7 +123,7 @@ pub(super) fn put_in(
     let moved = system.graph.substitute(rates, &true_values);
     rates.copy_from_slice(&moved);
     for (name, node) in outputs {
-        // what is read of a column that stands for itself is that column
+        // the measurement of a column that stands for itself is that column
         if system.find_symbol(name).is_none_or(|symbol| !true_values.contains_key(&symbol)) {
             *node = system.graph.substitute(&[*node], &true_values)[0];
         }

@@ -104,7 +104,7 @@ fn log_gamma(mut x: f64) -> f64 {
         product *= x;
         x += 1.0;
     }
-    // Bernoulli's numbers over 2k(2k - 1), Abramowitz and Stegun 6.1.41; the last one tells less than 1e-16 from ten on
+    // Bernoulli's numbers over 2k(2k - 1), Abramowitz and Stegun 6.1.41; the last one adds less than 1e-16 from ten on
     const SERIES: [f64; 7] = [
         1.0 / 12.0,
         -1.0 / 360.0,

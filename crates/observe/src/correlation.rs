@@ -1,6 +1,6 @@
 //! Whether neighbouring residuals agree more than independent errors of a known size let them.
 //!
-//! A wrong model leaves a curve, and neighbours on a curve are alike, also where the sum of the squares is still what noise makes. The
+//! The residuals of a wrong model follow a curve, and neighbours on a curve are alike, even where the sum of the squares is what noise makes. The
 //! statistic is `S = sum r_i r_(i+1)` over the samples of each output. Of residuals `r = M e`, with `M = 1 - Q Q^T` the projector off what the
 //! unknowns follow, `S = r^T A r` has the mean `tr(A M)` and the variance `2 tr(A M A M)`, both in units of the errors (G. E. P. Box, G. M. Jenkins,
 //! Time Series Analysis, 1970, chapter 8, without the projector; A. M. Mathai, S. B. Provost, Quadratic Forms in Random Variables, 1992, for it).
@@ -8,26 +8,26 @@
 use super::chi_square::exceeded;
 use nalgebra::DMatrix;
 
-/// Fewer pairs of neighbours than these tell nothing.
+/// Fewer pairs of neighbours than these are not tested.
 const FEWEST: usize = 12;
 
 /// Residuals, and what is known of their errors.
 pub(super) struct Neighbours<'a> {
-    /// In the unit of the readings, sample by sample; none where a reading does not count.
+    /// In the unit of the measurements, sample by sample; none where a measurement is left out.
     pub residuals: &'a [Option<f64>],
     /// The places where nothing was measured, in their order: neighbours are those before and after them.
     pub unmeasured: &'a [usize],
     /// Outputs a sample: so many places further is the same output, one sample later.
     pub outputs: usize,
-    /// So many of the first are no readings.
+    /// So many of the first are no measurements.
     pub relations: usize,
     /// Their derivatives by the unknowns.
     pub slopes: &'a DMatrix<f64>,
-    /// How much of what the unknowns can follow they have taken: one of least squares.
+    /// By how much the sum of the squares falls for each unknown (`Loss::taken`): one for least squares.
     pub taken: f64,
     /// The standard deviation of an error.
     pub sigma: f64,
-    /// What rounding and computation may add to each, however these hang together.
+    /// What rounding and computation may add to each, however these are correlated.
     pub coherent: f64,
 }
 
@@ -51,7 +51,7 @@ impl Neighbours<'_> {
         let count = self.residuals.iter().flatten().count();
         let square: f64 = self.residuals.iter().flatten().map(|value| value * value).sum();
         let degrees = count.saturating_sub(self.slopes.ncols()).max(1) as f64;
-        // larger residuals than stated are a matter of the sum of squares; smaller ones are not held against less than what was stated
+        // larger residuals than stated are a matter of the sum of squares; smaller ones are compared with what was stated
         let own = square / degrees;
         let variance = own.max(self.sigma * self.sigma);
         let Some((mean, spread)) = self.moments(&pairs) else { return 1.0 };
@@ -66,7 +66,7 @@ impl Neighbours<'_> {
         }
     }
 
-    /// Mean and variance of the statistic of errors of size one; none where the unknowns leave too little.
+    /// Mean and variance of the statistic of errors of size one; none where too few degrees of freedom remain.
     fn moments(&self, pairs: &[(usize, usize)]) -> Option<(f64, f64)> {
         let q = self.slopes.clone().qr().q();
         let mean: f64 = -self.taken * pairs.iter().map(|(i, j)| q.row(*i).dot(&q.row(*j))).sum::<f64>();

@@ -1,10 +1,10 @@
 //! The explicit pair of J. R. Dormand and P. J. Prince of orders 5 and 4 (A family of embedded Runge-Kutta formulae, 1980), with its interpolation of order 4
-//! (E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 1993, section II.6), for those who make steps without a room of their own.
+//! (E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 1993, section II.6), for integrators that allocate nothing in a step.
 
-/// Where in a step the rates are taken, in parts of it.
+/// Where in a step the rates are taken, relative to its length.
 pub const NODES: [f64; 7] = [0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0, 1.0];
 
-/// What the state at each node takes of the rates before it; the last one is the end of the step.
+/// The weights with which the state at each node takes the rates before it; the last row gives the end of the step.
 pub const STAGES: [[f64; 6]; 7] = [
     [0.0; 6],
     [1.0 / 5.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -30,7 +30,7 @@ const BETWEEN: [f64; 7] = [
     69997945.0 / 29380423.0,
 ];
 
-/// A coordinate at a part of a step, from what it is at both ends, and its rates at the nodes.
+/// A coordinate within a step, at `part` of its length, from what it is at both ends, and its rates at the nodes.
 pub fn between(part: f64, length: f64, [first, last]: [f64; 2], rates: [f64; 7]) -> f64 {
     let rest = 1.0 - part;
     let whole = last - first;

@@ -1,18 +1,19 @@
-//! Whether residuals drift: whether what is left of an output follows a slow curve that nothing which was fitted explains.
+//! Whether residuals drift: whether the residuals of an output follow a slow curve that no fitted unknown explains.
 //!
-//! What a slow error of the model leaves, a gyro's bias or a gain, is smaller than the noise at each sample and has the same sign at hundreds of them. The sum of the squares does not
-//! notice it, nor do neighbours, whose products are lost among those of the noise. Of residuals `r = M e`, with `M` the projector off what the unknowns follow and errors `e` that
-//! are independent and of one size, the part along orthonormal columns `B = M B` is `B^T e`: its square is that of as many errors as there are columns. Here these are the
-//! polynomials of the lowest degrees over the samples of one output (score test against a polynomial trend; C. R. Rao, Large sample tests of statistical hypotheses, 1948).
+//! The residual of a slow error of the model, a gyro's bias or a gain, is smaller than the noise at each sample and has the same sign at hundreds of them. The
+//! sum of the squares does not notice it, nor do neighbours, whose products are lost among those of the noise. Of residuals `r = M e`, with `M` the projector
+//! off what the unknowns follow and errors `e` that are independent and of one size, the part along orthonormal columns `B = M B` is `B^T e`: its square is
+//! that of as many errors as there are columns. Here these are the polynomials of the lowest degrees over the samples of one output (score test against a
+//! polynomial trend; C. R. Rao, Large sample tests of statistical hypotheses, 1948).
 
 use super::chi_square::exceeded;
 use nalgebra::{DMatrix, DVector};
 
 /// Polynomials up to this degree are slow curves.
 const DEGREE: usize = 3;
-/// Fewer samples of an output than these tell of no slow curve.
+/// An output with fewer samples than these is not tested for slow curves.
 const FEWEST: usize = 12;
-/// Of a polynomial that the unknowns follow but for less than this part nothing is told: there an estimate that has not quite converged would be met.
+/// A polynomial that the unknowns follow but for less than this part is not tested: an estimate that has not quite converged would fail there.
 const LEAST_LEFT: f64 = 0.1;
 
 /// How unlikely the slow part of the residuals is, were the model right.
@@ -32,7 +33,7 @@ pub(super) struct Trend<'a> {
     pub followed: &'a DMatrix<f64>,
     /// Outputs a sample.
     pub outputs: usize,
-    /// How long what rounding and computation add may be, over all samples of an output and however it hangs together, in the same unit.
+    /// The largest norm of what rounding and computation add, over all samples of an output and however it is correlated, in the same unit.
     pub coherent: f64,
 }
 
@@ -135,8 +136,8 @@ mod tests {
         known.drift(|output| slow_curves(2 * SAMPLES, (2, output, 0), |_| true)).unwrap()
     }
 
-    /// Of right residuals the probability is even where outputs share no unknowns; where they do, what is left of one is left of the other, too, and small ones are rarer: by the largest
-    /// distances of 400 of them, and Kolmogorov's limit of one in a thousand.
+    /// Of right residuals the probability is even where outputs share no unknowns; where they do, the residuals of one depend on those of the other, and small
+    /// probabilities are rarer: by the largest distances of 400 of them, and Kolmogorov's limit of one in a thousand.
     #[test]
     fn of_right_residuals_it_is_even() {
         let mut random = ChaCha8Rng::seed_from_u64(5);
@@ -154,7 +155,7 @@ mod tests {
         }
     }
 
-    /// A curve of half a deviation is told, and of which output; not where rounding may have made it.
+    /// A curve of half a deviation is found, and its output is named; not where rounding may have made it.
     #[test]
     fn a_slow_curve_below_the_noise_is_told() {
         let mut random = ChaCha8Rng::seed_from_u64(6);

@@ -10,17 +10,17 @@ use std::ops::Range;
 /// Steps of the region of trust that are allowed at the end of a search.
 pub(super) const LAST_STEPS: u64 = 50;
 
-/// What leaves so many times as much as an answer, as the noise, or as this part of the largest reading, which a rough search may leave, is none.
+/// A residual of so many times that of an answer, of the noise, or of this part of the largest measurement (the error of a rough search), is no answer.
 const FAR_FROM_ANSWER: f64 = 10.0;
 const ROUGHLY: f64 = 1e-5;
 
-/// As many steps again that leave more than this part have led nowhere.
+/// As many steps again after which the residual is above this part of what it was have led nowhere.
 const STILL: f64 = 0.99;
 
 impl MovingWindow {
     /// Where a search from a state ends: by a region of trust, with integration that is less exact first, and where that takes all its steps, by
-    /// Newton's method, whose second derivatives know how a valley bends. Where there is an answer, which leaves so much in the readings' unit, no more is
-    /// done for what leaves far more.
+    /// Newton's method, whose second derivatives know how a valley bends. Where there is an answer, with this residual in the measurements' unit, no more is
+    /// done for a far larger residual.
     pub(super) fn end(
         &self,
         task: &Task<'_>,
@@ -32,7 +32,7 @@ impl MovingWindow {
         let trusting = MovingWindow { method: WindowSearch::TrustRegion, steps, ..*self };
         let rough = trusting.update(&task.roughly(), state, rows, clamped);
         let read =
-            rows.clone().flat_map(|row| task.readings(row)).fold(0.0, |most: f64, x| most.max(x.abs()));
+            rows.clone().flat_map(|row| task.measurements(row)).fold(0.0, |most: f64, x| most.max(x.abs()));
         let is_far = |left: f64| {
             let most = FAR_FROM_ANSWER * left.max(task.sigma).max(ROUGHLY * read);
             rough.rms_residual.is_nan() || rough.rms_residual > most
@@ -69,12 +69,12 @@ impl MovingWindow {
     }
 }
 
-/// Whether it is known how large the errors of the readings are.
+/// Whether it is known how large the errors of the measurements are.
 fn is_known(task: &Task<'_>) -> bool {
     task.noise != Noise::Unstated && task.loss == Loss::default()
 }
 
-/// Whether far more is left than a noise that is known where the search ended or could not get on.
+/// Whether the residual is far above a noise that is known where the search ended or could not get on.
 pub(super) fn is_refuted(task: &Task<'_>, update: &Update) -> bool {
     let is_end = !matches!(update.end, UpdateEnd::Converged | UpdateEnd::Lost(_));
     is_end && is_known(task) && update.rms_residual > FAR_FROM_ANSWER * task.sigma

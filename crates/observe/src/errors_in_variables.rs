@@ -2,7 +2,7 @@
 //! the outputs and their errors make most likely.
 //!
 //! Gauss and Newton's method for all unknowns at once, the samples' errors eliminated: differences are weighted by their covariance
-//! ([`Weights`]), a state is sought, the most likely errors are taken off the columns, and weights are made anew there, until
+//! ([`Weights`]), a state is estimated, the most likely errors are taken off the columns, and weights are made anew there, until
 //! the answer stays. Reference: W. A. Fuller, Measurement Error Models, 1987, section 3.2.
 
 use super::moving_window::MovingWindow;
@@ -22,7 +22,7 @@ const ROUNDS: usize = 6;
 /// An answer stays that moves by less than this part of its deviation.
 const STAYS: f64 = 1e-3;
 
-/// A state that leaves no more than so many variances a reading is where weighted steps begin.
+/// Weighted steps begin from a state whose residuals have no more than so many variances a measurement.
 const EXPLAINED: f64 = 4.0;
 
 impl MovingWindow {
@@ -37,7 +37,7 @@ impl MovingWindow {
         ask: bool,
     ) -> Update {
         let begin = Instant::now();
-        // an implicit output errs as the readings in it do, now much and now hardly at all: weighed alike they may lead far away from where one is
+        // an implicit output errs as the measurements in it do, now much and now hardly at all: weighed alike they may lead far away from where one is
         let believed = match task.full.has_implicit() {
             true => self.weighed(task, belief, None, rows, clamped),
             false => None,
@@ -98,7 +98,7 @@ impl MovingWindow {
         Update { steps, troubled, seconds: begin.elapsed().as_secs_f64(), ..update }
     }
 
-    /// The sum of the squares of what a state leaves, weighed by the errors of the readings there, in units in which each of these is as
+    /// The sum of the squares of the residuals of a state, weighed by the errors of the measurements there, in units in which each of these is as
     /// large as the task's; nothing where the model cannot be followed.
     fn weighed(
         &self,
@@ -119,7 +119,7 @@ impl MovingWindow {
         Some(expansion.differences.norm_squared()).filter(|square| square.is_finite())
     }
 
-    /// The least standard deviations that estimates of what is sought can have at the first of some rows, where this is believed of it;
+    /// The Cramér-Rao bound (1 sigma) of each estimated state at the first of some rows, linearised at this state;
     /// infinite where the model cannot be followed.
     pub fn bounds(
         &self,

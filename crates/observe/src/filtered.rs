@@ -1,4 +1,4 @@
-//! What the filters have in common: what they believe sample by sample with its bars, their innovations, and the bounds that they hold.
+//! What the filters have in common: what they believe sample by sample with its bars, their innovations, and the bounds that they keep.
 
 use super::Learned;
 use super::task::Task;
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 pub(super) struct Filtered<'t, 'a> {
     task: &'t Task<'a>,
     pub track: Track,
-    /// The least standard deviation of a reading that is believed.
+    /// The least standard deviation of a measurement that is believed.
     least: f64,
     chi_square: f64,
     degrees: usize,
@@ -20,11 +20,11 @@ pub(super) struct Filtered<'t, 'a> {
     /// The sum of the products of neighbours, and how many there are.
     products: f64,
     counted: usize,
-    /// What was held at a bound: when first, and at how many samples.
+    /// The states that were moved to a bound: when first, and at how many samples.
     held: BTreeMap<(usize, bool), (f64, usize)>,
 }
 
-/// An innovation: expected minus read, and its covariance.
+/// An innovation: expected minus measured, and its covariance.
 pub(super) struct Innovation {
     pub residual: DVector<f64>,
     pub covariance: DMatrix<f64>,
@@ -33,7 +33,7 @@ pub(super) struct Innovation {
 }
 
 impl Innovation {
-    /// Expected minus read of all outputs; NaN of those that were not measured.
+    /// Expected minus measured of all outputs; NaN of those that were not measured.
     pub fn of_all(&self, outputs: usize) -> Vec<f64> {
         let mut all = vec![f64::NAN; outputs];
         self.measured.iter().zip(self.residual.iter()).for_each(|(place, own)| all[*place] = *own);
@@ -41,21 +41,21 @@ impl Innovation {
     }
 }
 
-/// The places of what was measured among the readings of a sample.
+/// The places of what was measured among the measurements of a sample.
 pub(super) fn measured(read: &[f64]) -> Vec<usize> {
     (0..read.len()).filter(|place| !read[*place].is_nan()).collect()
 }
 
 impl<'t, 'a> Filtered<'t, 'a> {
-    /// Before anything is read.
+    /// Before any measurement.
     pub fn begin(task: &'t Task<'a>, least: f64) -> Self {
         let (track, held) = (Track::default(), BTreeMap::new());
         let (chi_square, products) = (0.0, 0.0);
         Filtered { task, track, least, chi_square, degrees: 0, before: None, products, counted: 0, held }
     }
 
-    /// The variance of each output's reading, as the filter believes it.
-    pub fn reading_variances(&self) -> DVector<f64> {
+    /// The variance of each output's measurement, as the filter believes it.
+    pub fn measurement_variances(&self) -> DVector<f64> {
         let own = |output: usize| self.task.output_errors(output).variance().max(self.least * self.least);
         DVector::from_fn(self.task.full.outputs.len(), |output, _| own(output))
     }
@@ -126,7 +126,7 @@ impl<'t, 'a> Filtered<'t, 'a> {
         }
         let outputs = 0..self.task.full.outputs.len();
         let rounding = outputs.map(|output| self.task.output_errors(output).rounding).fold(0.0, f64::max);
-        let sigma = self.reading_variances().min().sqrt();
+        let sigma = self.measurement_variances().min().sqrt();
         let coherent = (rounding / 2.0 + self.task.timing) / sigma;
         self.track.innovations =
             Innovations::of([self.chi_square, self.products], [self.degrees, self.counted], sigma, coherent);

@@ -1,4 +1,4 @@
-//! Whether a residual is what the errors of the readings explain.
+//! Whether a residual is what the errors of the measurements explain.
 
 use super::chi_square::exceeded;
 use super::correlation::Neighbours;
@@ -9,16 +9,16 @@ use nalgebra::{DMatrix, DVector};
 /// A run says of a model that is right that it does not fit no more often than this.
 pub const FALSE_ALARMS: f64 = 1e-3;
 
-/// A residual below this part of the readings is what interpolation between samples may leave: it tells nothing of the model.
+/// A residual below this part of the measurements may come from interpolation between samples: it says nothing of the model.
 pub(super) const COMPUTED: f64 = 1e-7;
 
-/// More readings than this part of them are no outliers: the model is wrong.
+/// Where more than this part of the measurements are outliers, they are none: the model is wrong.
 const MOST_OUTLIERS: f64 = 0.1;
 
-/// What is known of the errors of the readings.
+/// What is known of the errors of the measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Noise {
-    /// Nothing: their size is estimated from what the best state leaves.
+    /// Nothing: their size is estimated from the residual of the best state.
     Unstated,
     /// Normal errors of this standard deviation, and rounding to multiples of a resolution; both in the outputs' unit.
     Stated {
@@ -29,17 +29,17 @@ pub enum Noise {
     },
 }
 
-/// What is known of the errors of the readings of a column: independent normal ones, and rounding.
+/// What is known of the errors of the measurements of a column: independent normal ones, and rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MeasurementErrors {
     /// The standard deviation, in the column's unit.
     pub normal: f64,
-    /// Readings are multiples of this; zero for none.
+    /// Measurements are multiples of this; zero for none.
     pub rounding: f64,
 }
 
 impl MeasurementErrors {
-    /// The variance of a reading.
+    /// The variance of a measurement.
     pub fn variance(self) -> f64 {
         self.normal * self.normal + self.rounding * self.rounding / 12.0
     }
@@ -57,31 +57,31 @@ pub enum NoiseFrom {
     Stated,
     /// It is the residual's own: no noise was stated.
     Residual,
-    /// Nothing is left but what rounding and interpolation leave, and no noise was stated.
+    /// The residual is no larger than rounding and interpolation make it, and no noise was stated.
     Computation,
 }
 
 /// How well the best state explains a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
-    /// The sum of the squares of expected minus read, in units of `sigma`.
+    /// The sum of the squares of expected minus measured, in units of `sigma`.
     pub chi_square: f64,
-    /// Readings less unknowns.
+    /// Measurements less unknowns.
     pub degrees: usize,
     /// How likely a residual is that is no better, were the model right: of one so large (chi-square), whose neighbours agree so much, or that drifts so far, where the
     /// noise was stated; of one whose neighbours are so alike (von Neumann's ratio) where it was not.
     pub probability: f64,
-    /// Readings that no normal error explains, and that a robust loss leaves out of the test.
+    /// Measurements that no normal error explains, and that a robust loss leaves out of the test.
     pub outliers: usize,
-    /// Readings, these among them.
-    pub readings: usize,
-    /// The part of their size in the probability, by the sum of the squares; none where the noise was not stated.
+    /// Measurements, outliers among them.
+    pub measurements: usize,
+    /// The probability of so large a sum of squares (chi-square); none where the noise was not stated.
     pub squares: Option<f64>,
-    /// The part of neighbours in the probability; none where they were not tested by themselves.
+    /// The probability of neighbours that agree so much; none where they were not tested by themselves.
     pub neighbours: Option<f64>,
-    /// The part of slow curves in the probability; none where the noise was not stated, or samples are few.
+    /// The test for slow curves; none where the noise was not stated, or samples are few.
     pub drift: Option<Drift>,
-    /// The standard deviation of a reading, in its unit.
+    /// The standard deviation of a measurement, in its unit.
     pub sigma: f64,
     /// Where it comes from.
     pub from: NoiseFrom,
@@ -90,9 +90,9 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Whether so many readings are beyond what normal errors reach that they are no outliers.
+    /// Whether so many measurements are beyond what normal errors reach that they are no outliers.
     pub fn has_outliers(&self) -> bool {
-        self.outliers as f64 > MOST_OUTLIERS * self.readings as f64
+        self.outliers as f64 > MOST_OUTLIERS * self.measurements as f64
     }
 
     /// Whether it is the neighbours that agree too much, more than that the residuals are large or drift.
@@ -124,17 +124,17 @@ pub(super) struct Residuals<'a> {
     /// How they were weighed.
     pub loss: Loss,
     pub outputs: usize,
-    /// So many of the first are no differences of readings: they are what was known before, in the same unit.
+    /// So many of the first are no differences of measurements: they are what was known before, in the same unit.
     pub relations: usize,
-    /// What was fitted, readings that were taken as they are included.
+    /// What was fitted, measurements that were taken as they are included.
     pub unknowns: usize,
-    /// The root of the mean square of what was read.
+    /// The root mean square of the measurements.
     pub size: f64,
     /// The probability of a false alarm that this window may have.
     pub alarm: f64,
     /// The least standard deviation that is believed where none is stated.
     pub least: f64,
-    /// What the rounding of the times may add to a reading.
+    /// What the rounding of the times may add to a measurement.
     pub timing: f64,
 }
 
@@ -143,7 +143,7 @@ impl Residuals<'_> {
         (self.differences.len() - self.unmeasured.len()).saturating_sub(self.unknowns)
     }
 
-    /// What is left of a reading that is right: by interpolation, and by the rounding of its time.
+    /// The residual of a measurement that is right: by interpolation, and by the rounding of its time.
     pub fn computed(&self) -> f64 {
         COMPUTED * self.size + self.timing
     }
@@ -167,10 +167,10 @@ impl Residuals<'_> {
 
     /// Against stated errors: by the sum of the squares, and by how much neighbours agree.
     ///
-    /// The best state is no farther from the readings than the true one is, and rounding adds at most half a resolution to each, however these
+    /// The best state is no farther from the measurements than the true one is, and rounding adds at most half a resolution to each, however these
     /// roundings hang together: that much is taken off before normal errors have to explain the rest.
     ///
-    /// A robust loss leaves outliers out, which are told apart by what no normal error reaches, and takes a little less of the errors than least squares do
+    /// A robust loss leaves outliers out, which no normal error reaches, and takes a little less of the errors than least squares do
     /// (`Loss::taken`); more outliers than [`MOST_OUTLIERS`] are no outliers.
     fn against(&self, normal: f64, rounding: f64) -> Fit {
         let sigma = (normal * normal + rounding * rounding / 12.0).sqrt();
@@ -185,10 +185,10 @@ impl Residuals<'_> {
             .collect();
         let count = kept.iter().flatten().count();
         let outliers = kept.len() - self.unmeasured.len() - count;
-        let readings = (kept.len() - self.unmeasured.len()).saturating_sub(self.relations);
+        let measurements = (kept.len() - self.unmeasured.len()).saturating_sub(self.relations);
         let degrees = count.saturating_sub(self.unknowns);
         let length = kept.iter().flatten().map(|value| value * value).sum::<f64>().sqrt();
-        // what the computation adds is no error of a reading
+        // what the computation adds is no error of a measurement
         let rest = length - coherent * (count as f64).sqrt();
         let taken = self.loss.taken();
         let own = degrees as f64 + (1.0 - taken) * self.unknowns.min(count) as f64;
@@ -213,7 +213,7 @@ impl Residuals<'_> {
             degrees,
             probability,
             outliers,
-            readings,
+            measurements,
             squares: Some(large),
             neighbours: alike,
             drift,
@@ -237,7 +237,7 @@ impl Residuals<'_> {
         trend.drift(|output| slow_curves(kept.len(), (outputs, output, self.relations), counts))
     }
 
-    /// By what is left itself: independent errors differ from their neighbours by twice their variance in the mean, the remains
+    /// By the residuals themselves: independent errors differ from their neighbours by twice their variance in the mean, the residuals
     /// of a wrong model by less. Under independent normal errors the ratio of J. von Neumann (Distribution of the ratio of the
     /// mean square successive difference to the variance, 1941) has the mean 2 and nearly the variance `4 (n - 2)/(n^2 - 1)`; for as
     /// few as eight differences the tail of the normal distribution is the larger one on this side.
@@ -249,13 +249,13 @@ impl Residuals<'_> {
         let computed = rms <= self.computed().max(self.least);
         let probability = if computed { 1.0 } else { self.independent() };
         let fits = degrees > 0 && probability >= self.alarm && rms.is_finite();
-        let readings = (self.differences.len() - self.unmeasured.len()).saturating_sub(self.relations);
+        let measurements = (self.differences.len() - self.unmeasured.len()).saturating_sub(self.relations);
         Fit {
             chi_square,
             degrees,
             probability,
             outliers: 0,
-            readings,
+            measurements,
             squares: None,
             neighbours: None,
             drift: None,
@@ -297,8 +297,8 @@ pub(super) fn least_of<const N: usize>(all: [Option<f64>; N]) -> f64 {
     -(count as f64 * (-least).ln_1p()).exp_m1()
 }
 
-/// Whether differences of two outputs in turn are what stated errors explain, after so many unknowns were fitted: `size` is the root of the mean square
-/// of what was read, and the only test of a run may have all of its false alarms.
+/// Whether stated errors explain differences of two outputs in turn, after so many unknowns were fitted: `size` is the root mean square
+/// of the measurements, and the only test of a run may have all of its false alarms.
 pub fn explains(differences: &DVector<f64>, unknowns: usize, size: f64, noise: Noise) -> Fit {
     let alarm = FALSE_ALARMS;
     let (slopes, loss) = (None, Loss::Squares);
@@ -382,7 +382,7 @@ mod tests {
         }
     }
 
-    /// As many unknowns as readings: any model goes through them, and nothing bears it out.
+    /// As many unknowns as measurements: any model goes through them, and nothing bears it out.
     #[test]
     fn nothing_fits_that_nothing_is_left_to_check() {
         let differences = DVector::from_element(160, 0.0);
@@ -414,7 +414,7 @@ mod tests {
             degrees: 100,
             probability: 0.0,
             outliers: 0,
-            readings: 100,
+            measurements: 100,
             squares: Some(1.0e-200),
             neighbours: Some(1.5e-200),
             drift: None,

@@ -34,7 +34,7 @@ pub enum Order {
 pub struct Lost {
     /// In s.
     pub time: f64,
-    /// The reason, in words.
+    /// The reason, as text.
     pub why: String,
 }
 
@@ -64,7 +64,7 @@ pub struct ModelFlow<'a> {
     pub signals: &'a Signals,
     /// The relative and absolute error of a step.
     pub tolerance: f64,
-    /// How the way from one sample to the next is taken.
+    /// How the flow goes from one sample to the next.
     pub stride: Stride,
 }
 
@@ -77,11 +77,11 @@ pub enum Stride {
     ByTolerance,
 }
 
-/// The equations are evaluated no more often than this between two samples (one step takes thirteen times): who needs
-/// more has met a pole, or has samples that are too far apart.
+/// The equations are evaluated no more often than this between two samples (one step takes thirteen times): a system that needs
+/// more has met a singularity, or has samples that are too far apart.
 const MOST_EVALUATIONS: usize = 3000;
 
-/// A step that is not refined errs by this part of what is tolerated, so that a thousand of them err by no more than one that is.
+/// A step that is not refined has this part of the tolerated error, so that a thousand of them err by no more than one that is refined.
 const CAREFUL: f64 = 1e-3;
 
 /// The unknowns that one call can carry.
@@ -369,7 +369,7 @@ pub fn advance(
     solver.set_output(OutputType::Sparse);
     let lost = |after: f64, why: &str| Lost { time: from + after, why: why.to_owned() };
     solver.integrate().map_err(|error| match error {
-        // the steps shrink since nothing is evaluated any more: of the equations this says nothing
+        // the steps shrink since nothing is evaluated any more: that is no property of the equations
         IntegrationError::StepSizeUnderflow { x } | IntegrationError::MaxNumStepReached { x, .. }
             if evaluations.get() > MOST_EVALUATIONS =>
         {

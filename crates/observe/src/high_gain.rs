@@ -26,10 +26,10 @@ use std::collections::HashMap;
 /// Reference: J. P. Gauthier, H. Hammouri, S. Othman, A simple observer for nonlinear systems, IEEE TAC 37(6), 1992; for
 /// several outputs G. Bornard and H. Hammouri, CDC 1991.
 ///
-/// It knows no covariance of its own. That of its error is carried beside it: with `F = df/dx - (dPhi/dx)^-1 K H` the error moves as `e' = F e + (dPhi/dx)^-1 K v` under
-/// the error `v` of the curve through the readings, from one sample to the next with `F` as it is at the first. The curve hangs on eight readings at a time, so that the errors
-/// of neighbouring steps are not independent: how far each of these eight has moved the state is carried too. The covariance begins with a half of each size, as that of the
-/// Kalman filter does.
+/// The method has no covariance of its own. That of its error is carried beside it: with `F = df/dx - (dPhi/dx)^-1 K H` the error moves as `e' = F e +
+/// (dPhi/dx)^-1 K v` under the error `v` of the curve through the measurements, from one sample to the next with `F` as it is at the first. The curve depends
+/// on eight measurements at a time, so that the errors of neighbouring steps are not independent: how far each of these eight has moved the state is carried
+/// too. The covariance begins with a half of each size, as that of the Kalman filter does.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct HighGain {
@@ -43,10 +43,10 @@ impl Default for HighGain {
     }
 }
 
-/// The standard deviation of the first guess, relative to the sizes of what is sought.
+/// The standard deviation of the first guess, relative to the sizes of the estimated states.
 const PRIOR: f64 = 0.5;
 
-/// The least standard deviation that a reading is believed to have, in its unit.
+/// The least standard deviation that a measurement is believed to have, in its unit.
 const LEAST: f64 = 1e-6;
 
 /// A matrix whose scaled condition is worse than this is taken to be singular.
@@ -89,7 +89,7 @@ impl Observer for HighGain {
         if let Some((known, spread)) = &learned.filter {
             (state, covariance) = (known.as_slice().to_vec(), spread.clone());
         }
-        let noise = so_far.reading_variances();
+        let noise = so_far.measurement_variances();
         let mut error = Spread::of_a_guess(covariance, noise, task.signals.carriers());
         let canonical = match Canonical::new(task, &state) {
             Ok(canonical) => canonical,
@@ -98,8 +98,8 @@ impl Observer for HighGain {
             }
         };
         let record = |so_far: &mut Filtered<'_, '_>, state: &[f64], error: &Spread, row: usize| {
-            // the outputs of the canonical form are states: they are what is read
-            let read = task.readings(row);
+            // the outputs of the canonical form are states: they are measured directly
+            let read = task.measurements(row);
             let seen = task.full.outputs.iter().map(|name| task.full.find(name).map(|place| state[place]));
             let residual: Vec<f64> = seen.zip(&read).filter_map(|(seen, read)| Some(seen? - read)).collect();
             if row > 0 {
@@ -429,7 +429,7 @@ fn observability_indices(all: &DMatrix<f64>, longest: usize) -> Vec<usize> {
         for (output, length) in lengths.iter_mut().enumerate().filter(|(_, length)| **length == k) {
             let row = all.row(output * longest + k).into_owned();
             let size = row.norm();
-            // twice: what rounding leaves of the first projection is taken away by the second
+            // twice: the second projection takes away the rounding of the first
             let rest =
                 (0..2).fold(row, |row, _| basis.iter().fold(row, |row, unit| &row - unit * row.dot(unit)));
             if rest.norm() > size / SINGULAR.sqrt() {

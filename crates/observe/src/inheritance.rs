@@ -1,10 +1,10 @@
 //! Window after window, each with what those before it have learned.
 //!
-//! A window hands on what its readings tell of the state at its end as the triangular factor of an information matrix: the rows
-//! `R (x - m)` have independent errors as large as a reading's. The next window takes them as readings beside its own, in the place of the
+//! A window hands on what its measurements determine of the state at its end as the triangular factor of an information matrix: the rows
+//! `R (x - m)` have independent errors as large as a measurement's. The next window takes them as measurements beside its own, in the place of the
 //! first sample, which both share (C. V. Rao, J. B. Rawlings, D. Q. Mayne, Constrained state estimation for nonlinear discrete-time systems, 2003, who call
-//! them the arrival cost; G. J. Bierman, Factorization Methods for Discrete Sequential Estimation, 1977, for the factor). States that do
-//! not move are so shared by all windows.
+//! them the arrival cost; G. J. Bierman, Factorization Methods for Discrete Sequential Estimation, 1977, for the factor). Constants
+//! are so shared by all windows.
 
 use super::fit::NoiseFrom;
 use super::learned::{Arrival, Learned};
@@ -17,11 +17,11 @@ use super::{MovingWindow, Order, seam, weights};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What is made of a window of which nothing is inherited: its update, and other states that fit as well.
+/// What is made of a window that inherits nothing: its update, and other states that fit as well.
 pub(super) type Anew<'f> = dyn Fn(&[f64], &Range<usize>, &[usize], &Learned) -> (Update, Vec<Update>) + 'f;
 
 impl MovingWindow {
-    /// Window after window: each begins with what those before it have learned, and anew where its readings contradict that.
+    /// Window after window: each begins with what those before it have learned, and anew where its measurements contradict that.
     pub(super) fn observe_by(
         &self,
         task: &Task<'_>,
@@ -33,7 +33,7 @@ impl MovingWindow {
         let samples = task.signals.times().len();
         let is_first = task.learned.is_none();
         let fewest = if is_first { self.window.min(samples) } else { self.window };
-        // what told too little alone stands before the next window
+        // samples that were uninformative by themselves stand before the next window
         let mut row = learned.rows_unobserved();
         while row + 1 < samples && !task.interrupted() {
             // windows share a sample: where one ends the next begins
@@ -44,7 +44,7 @@ impl MovingWindow {
             let before = learned.spread.take();
             let mut covariance = before.as_ref().map(|before| Arc::new(before.as_read(task)));
             let (mut is_tested, mut meets) = (false, None);
-            // too few samples to compare are only followed, and seen if those before were
+            // too few samples to compare are only followed, and known if those before were
             if rows.len() >= fewest {
                 let grown =
                     self.grown_by_unseen(task, &rows, unobserved.as_deref(), &learned, anew, &mut track);
@@ -63,13 +63,13 @@ impl MovingWindow {
                         (Self::inheriting(task, &learned, clamped), update, others)
                     }
                 };
-                let is_blind = matches!(update.end, UpdateEnd::Blind { .. });
-                unobserved = match is_blind && self.may_grow(task, clamped) {
+                let is_unobservable = matches!(update.end, UpdateEnd::Unobservable { .. });
+                unobserved = match is_unobservable && self.may_grow(task, clamped) {
                     true => self.unseen_after(&rows, unobserved.as_deref(), &learned, &update, &mut track),
                     false => None,
                 };
                 learned.is_asked |= is_asked(&update);
-                learned.sees = !is_blind && !matches!(update.end, UpdateEnd::Lost(_));
+                learned.sees = !is_unobservable && !matches!(update.end, UpdateEnd::Lost(_));
                 start = [&update.estimate[..], &update.outputs].concat();
                 (covariance, is_tested) = (update.covariance.clone(), update.has_tested());
                 meets = before.filter(|_| !is_grown).map(|before| (before, update.is_heir));
@@ -126,7 +126,7 @@ impl MovingWindow {
         (fresh, others)
     }
 
-    /// Says what lies at a bound that was stated: its deviation is that of an unknown that is free.
+    /// Notes the estimates that lie at a bound that was stated: their deviation is that of a free unknown.
     fn note_bounds(&self, task: &Task<'_>, update: &Update, track: &mut Track) {
         for (place, bound) in &update.at_bounds {
             let name = &task.full.states[*place];
@@ -136,8 +136,8 @@ impl MovingWindow {
 }
 
 impl Arrival {
-    /// What a window tells of the state at its last sample, where the state at its first is this and nothing of it was kept from
-    /// moving; none where that is no number.
+    /// What the measurements of a window determine of the state at its last sample, linearised at this state at its first, with all states
+    /// free; none where differences are fewer than states, or a number is not finite.
     fn after(window: &Window<'_>, state: &[f64]) -> Option<Arrival> {
         let n = state.len();
         let free: Vec<usize> = (0..n).collect();
@@ -156,7 +156,7 @@ impl Arrival {
 }
 
 impl Learned {
-    /// What is known before any sample is read.
+    /// What is known before any measurement.
     pub(super) fn nothing(task: &Task<'_>) -> Learned {
         Learned::belief_alone(task.within_bounds(task.guess.clone()))
     }
@@ -175,8 +175,8 @@ impl MovingWindow {
         Some(Task { arrival: Some(arrival), exact: false, ..task.clone() })
     }
 
-    /// What an update of some rows leaves to the next window: nothing where it has no answer that the readings bear out, or where readings have
-    /// no errors, so that nothing is to be weighed.
+    /// What an update of some rows hands on to the next window: nothing where the measurements do not bear its answer out, where they have
+    /// no errors to weigh, or where states are clamped or weights are needed.
     pub(super) fn learn(
         &self,
         task: &Task<'_>,

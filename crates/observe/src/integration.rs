@@ -1,11 +1,11 @@
-//! Pure integration: the equations, from the first guess to the end. What the thesis resorts to where its observer cannot
-//! see, and the line below which no observer should fall.
+//! Pure integration: the equations, from the first guess to the end. What the thesis resorts to where the state is not
+//! observable, and the line below which no observer should fall.
 
 use super::Learned;
 use super::task::{Observer, Task};
 use super::track::{SampleEstimate, Track};
 
-/// Integrates what is sought with the outputs as they are read, and never compares.
+/// Integrates the estimated states with the outputs as measured, and never compares.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Integration;
 
@@ -35,7 +35,7 @@ impl Observer for Integration {
     }
 }
 
-/// A state of which nothing says how well it is known.
+/// A state of which the covariance is not known.
 fn unknown(time: f64, state: Vec<f64>) -> SampleEstimate {
     SampleEstimate { time, state, deviations: Vec::new(), residual: Vec::new() }
 }

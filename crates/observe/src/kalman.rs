@@ -7,7 +7,7 @@ use super::{Learned, Lost, Order};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Deserialize;
 
-/// The extended Kalman filter with continuous equations and sampled readings.
+/// The extended Kalman filter with continuous equations and sampled measurements.
 ///
 /// Between two samples the state follows the model and the covariance `P` becomes `F P F^T + Q dt`, `F` being the exact
 /// derivative of the flow over the step; at a sample state and covariance are corrected by the gain `P H^T (H P H^T + R)^-1`.
@@ -16,11 +16,11 @@ use serde::Deserialize;
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Kalman {
-    /// The standard deviation of the first guess, relative to the sizes of what is sought.
+    /// The standard deviation of the first guess, relative to the sizes of the estimated states.
     pub prior: f64,
     /// What the equations are believed to miss: standard deviation a second^(1/2), relative to the sizes.
     pub process_noise: f64,
-    /// The least standard deviation that a reading is believed to have, in its unit: linearised as it is, the filter must
+    /// The least standard deviation that a measurement is believed to have, in its unit: linearised as it is, the filter must
     /// not believe that anything is exact.
     pub least_sigma: f64,
 }
@@ -98,14 +98,14 @@ impl Kalman {
                     so_far.track.hold(&lost);
                     let belief = state.as_slice()[..task.estimated()].to_vec();
                     state = DVector::from_vec(task.full_state(&belief, row));
-                    // what is held while the model is lost is known no longer
+                    // a state that is held while the model is lost is no longer known
                     let unknown = DVector::from_element(n, f64::INFINITY);
                     so_far.believe(times[row], state.as_slice(), &unknown, Vec::new());
                     keep(&state, &covariance, None);
                     continue;
                 }
             };
-            let noise = so_far.reading_variances();
+            let noise = so_far.measurement_variances();
             let innovation = correct(task, &mut state, &mut covariance, &noise, row);
             innovation.iter().for_each(|own| so_far.compare_white(own));
             so_far.hold(times[row], &mut state, &covariance);
@@ -132,7 +132,7 @@ fn predict(
     Ok((DVector::from_vec(end.state), end.slopes))
 }
 
-/// Corrects a state by what is read, whose errors have these variances; gives the innovation, or nothing where that cannot be told.
+/// Corrects a state by measurements, whose errors have these variances; gives the innovation, or nothing where nothing was measured or no gain exists.
 fn correct(
     task: &Task<'_>,
     state: &mut DVector<f64>,
@@ -146,7 +146,7 @@ fn correct(
         .follow(state.as_slice(), &free, &task.signals.times()[row..=row], Order::First)
         .ok()?;
     let here = here.first()?;
-    let read = task.readings(row);
+    let read = task.measurements(row);
     let measured = measured(&read);
     if measured.is_empty() {
         return None;

@@ -1,6 +1,6 @@
-//! Outputs whose readings are late by a time that is sought: what is expected of them is what the model had that much earlier.
+//! Outputs whose measurements are late by an unknown time: their expected value is what the model had that much earlier.
 //!
-//! A reading at `t` is `h(x(t - d))`, with `d` a state at rest. The state at `t - d` is that of the flow, followed back from the sample by the classical
+//! A measurement at `t` is `h(x(t - d))`, with `d` a constant state. The state at `t - d` is that of the flow, followed back from the sample by the classical
 //! method of Runge and Kutta, in numbers that carry the derivatives by all unknowns, `d` among them; columns are their curves at
 //! times that carry them too. A delay is a few steps between samples, in which the method errs by less than the curves do.
 
@@ -19,7 +19,7 @@ type RatesAt<'f, J> = dyn Fn(J, &[J]) -> Result<Vec<J>, Refusal> + 'f;
 /// The states a delay before a sample, from those at it: `rates` gives theirs at a time, `between` is the time between two samples.
 ///
 /// # Errors
-/// In words where the delay is longer than [`MOST_STEPS`], or the equations have no value.
+/// A message where the delay is longer than [`MOST_STEPS`], or the equations have no value.
 pub(super) fn states_before<J: Jet>(
     rates: &RatesAt<'_, J>,
     time: f64,

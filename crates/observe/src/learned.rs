@@ -3,12 +3,12 @@
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
-/// What is known of a state before its window is read.
+/// What is known of a state before the measurements of its window.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arrival {
     /// The state, with the outputs that are followed.
     pub mean: Vec<f64>,
-    /// The factor: a row a relation, a column a state, in units of a reading.
+    /// The factor: a row a relation, a column a state, in units of a measurement.
     pub factor: DMatrix<f64>,
 }
 
@@ -24,18 +24,18 @@ impl Arrival {
 /// What an observer has learned by a sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Learned {
-    /// What is believed of what is sought.
+    /// What is believed of the estimated states.
     pub belief: Vec<f64>,
     /// The standard deviations of that, where a filter has them.
     pub deviations: Option<Vec<f64>>,
-    /// Whether the readings before told the state.
+    /// Whether the measurements before determined the state.
     pub(super) sees: bool,
     /// Whether it is known which errors would not be noticed.
     pub(super) is_asked: bool,
     pub(super) arrival: Option<Arc<Arrival>>,
     /// The state of a filter, and its covariance or a factor of it.
     pub(super) filter: Option<(DVector<f64>, DMatrix<f64>)>,
-    /// The samples before that told too little.
+    /// The samples before that were uninformative by themselves.
     pub(super) unobserved: Option<Arc<UninformativeWindows>>,
     /// Where the last window ended, and how well that is known.
     pub(super) spread: Option<Arc<Spread>>,
@@ -48,15 +48,15 @@ pub struct Spread {
     pub state: Vec<f64>,
     /// The covariance of its errors.
     pub covariance: DMatrix<f64>,
-    /// The covariance of its errors, a row a state, with those of this sample's readings, a column an output.
-    pub by_reading: DMatrix<f64>,
-    /// By how many deviations rounding and computation may have moved it, however they hang together.
+    /// The covariance of its errors, a row a state, with those of this sample's measurements, a column an output.
+    pub by_measurement: DMatrix<f64>,
+    /// By how many deviations rounding and computation may have moved it, however they are correlated.
     pub coherent: f64,
-    /// Whether the readings bore it out, and their noise was stated.
+    /// Whether the measurements bore it out against a stated noise.
     pub is_tested: bool,
 }
 
-/// Windows that told too little of the state: the next one takes their samples as well.
+/// Windows that do not determine the state: the next one takes their samples as well.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UninformativeWindows {
     /// How many samples back the first of them begins.
@@ -66,7 +66,7 @@ pub struct UninformativeWindows {
 }
 
 impl Learned {
-    /// A state that is believed, and nothing of how well it is known.
+    /// A belief without a covariance.
     pub fn belief_alone(belief: Vec<f64>) -> Learned {
         let (sees, is_asked) = (true, false);
         Learned {
@@ -81,7 +81,7 @@ impl Learned {
         }
     }
 
-    /// How many samples before this one the next window takes as well, because they told too little alone.
+    /// How many samples before this one the next window takes as well, because they were uninformative alone.
     pub fn rows_unobserved(&self) -> usize {
         self.unobserved.as_ref().map_or(0, |unobserved| unobserved.rows)
     }

@@ -2,17 +2,16 @@
 //!
 //! [`Signals`] are columns of measurements over time. A [`Model`] takes some states of a system for unknown and everything else
 //! for constants or signals; a [`ModelFlow`] follows it through time with its exact first and second derivatives by the unknowns. A
-//! `Window` compares what the model expects with what was read, `cramer_rao` bounds how well that can tell the
+//! `Window` compares what the model expects with what was measured, `cramer_rao` bounds how well the measurements can determine the
 //! unknowns, and an [`Observer`] works through a [`Task`] and gives a [`Track`]: Newton's method and a region of trust
-//! ([`MovingWindow`]), [`MultipleShooting`], [`Integration`], [`Kalman`], [`Unscented`], [`HighGain`]. Whether what is left is what the errors of the readings explain
-//! is a [`Fit`]; which errors of what is taken for known it would show, and which not, says a [`Suspect`].
+//! ([`MovingWindow`]), [`MultipleShooting`], [`Integration`], [`Kalman`], [`Unscented`], [`HighGain`]. Whether the errors of the measurements explain the
+//! residual is a [`Fit`]; a [`Suspect`] says which errors of what is taken for known the residual would show, and which not.
 //!
 //! This floor knows systems, signals and numbers; it knows nothing of palms, bodies or scenes.
 
 #![warn(missing_docs)]
 
 mod attempt;
-mod blind;
 mod bound;
 mod calibration;
 mod chi_square;
@@ -58,6 +57,7 @@ mod together;
 mod trace;
 mod track;
 mod trust_region;
+mod unobservable;
 mod unscented;
 mod weights;
 mod whitening;

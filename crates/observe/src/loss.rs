@@ -1,15 +1,15 @@
-//! How residuals are weighed: by their squares, or so that a few that are far off say no more than that.
+//! How residuals are weighed: by their squares, or robustly, so that a few outliers have a bounded influence.
 
 use super::chi_square::exceeded;
 use serde::Deserialize;
 
-/// What is made as small as it can be.
+/// What is minimised.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Loss {
     /// The sum of the squares.
     #[default]
     Squares,
-    /// Squares up to so many standard deviations of a reading, and beyond as a straight line goes on from there (P. J. Huber, Robust estimation of a
+    /// Squares up to so many standard deviations of a measurement, and beyond as a straight line goes on from there (P. J. Huber, Robust estimation of a
     /// location parameter, 1964).
     Huber(f64),
 }
@@ -22,7 +22,7 @@ const OUTLIER: f64 = 4.0;
 
 impl Loss {
     /// The residual whose square is twice the loss of a difference, and its derivative by the difference; `sigma` is the standard deviation of
-    /// a reading.
+    /// a measurement.
     pub(super) fn residual(self, difference: f64, sigma: f64) -> (f64, f64) {
         match self {
             Loss::Huber(corner) if difference.abs() > corner * sigma => {
@@ -34,7 +34,7 @@ impl Loss {
         }
     }
 
-    /// Whether a difference is one that no normal error reaches, and that is left out of the test of fit; `coherent` is what rounding and computation
+    /// Whether no normal error reaches a difference, so that the test of fit leaves it out; `coherent` is what rounding and computation
     /// may add. Least squares leave nothing out.
     pub(super) fn is_outlier(self, difference: f64, sigma: f64, coherent: f64) -> bool {
         match self {

@@ -35,15 +35,15 @@ pub enum ModelError {
     /// A value is infinite or none.
     #[error("the value of '{name}' is not finite")]
     NotFinite { name: String },
-    /// No output depends on what is sought.
+    /// No output depends on the estimated states.
     #[error(
         "no output depends on the states that are followed: there is nothing to compare with the measurements"
     )]
-    Blind,
+    Unobservable,
     /// An output is not measured.
     #[error("the output '{name}' is not among the measured columns ({columns})")]
     NotMeasured { name: String, columns: String },
-    /// The delay of what is no output is sought.
+    /// The delay of a column that is no output is to be estimated.
     #[error(
         "the delay of '{column}' cannot be estimated: no output of that name depends on what is followed"
     )]
@@ -93,11 +93,11 @@ pub struct Model {
     pub(super) seen: Formulas,
     /// The columns of the signals that the formulas need.
     pub columns: Vec<usize>,
-    /// The columns of the outputs; none of those that are zero, which tie states to readings.
+    /// The columns of the outputs; none of those that are zero, which tie states to measurements.
     pub(super) measured: Vec<Option<usize>>,
-    /// The place of the state that is an output's delay, of those whose delay is sought.
+    /// The place of the state that is an output's delay, of those whose delay is estimated.
     pub(super) delays: Vec<Option<usize>>,
-    /// The system with what is known put in, the rates and the outputs in its graph: for who needs derivatives of them.
+    /// The system with what is known put in, the rates and the outputs in its graph: for those who need their derivatives.
     pub system: System,
     /// The states that are followed.
     pub symbols: Vec<Symbol>,
@@ -203,7 +203,7 @@ impl Model {
         self.measured[place]
     }
 
-    /// Whether an output is implicit: zero at the true state and readings, so that nothing is read of it itself.
+    /// Whether an output is implicit: zero at the true state and measurements, so that it has no measurement of its own.
     pub fn is_implicit(&self, output: usize) -> bool {
         self.measured.get(output).is_some_and(Option::is_none)
     }
@@ -223,7 +223,7 @@ impl Model {
     }
 
     /// Whether a followed state does not move, whatever the others are.
-    pub fn is_at_rest(&self, state: usize) -> bool {
+    pub fn is_constant_state(&self, state: usize) -> bool {
         let rate = self.rate_nodes.get(state).and_then(|node| self.system.graph.constant_value(*node));
         rate.is_some_and(|rate| rate.is_zero())
     }
@@ -310,7 +310,7 @@ fn values_of(
     Ok(values)
 }
 
-/// What is told of symbols, and the file's own values of parameters of which nothing is told and that are not `given` otherwise.
+/// The given values of symbols, and the file's own values of parameters without one that are not `given` otherwise.
 pub fn parameter_values(
     system: &mut System,
     told: &BTreeMap<String, f64>,

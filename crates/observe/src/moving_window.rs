@@ -1,4 +1,4 @@
-//! The observer of section 4.5: after every window of samples some steps towards the state at its beginning that explains
+//! The observer of section 4.5: after every window of samples some steps towards the state at its first sample that explains
 //! it best, from there on by the equations.
 
 use super::fit::{FALSE_ALARMS, Noise};
@@ -14,7 +14,7 @@ use serde::Deserialize;
 use std::cell::Cell;
 use std::ops::Range;
 
-/// How the smallest error of a window is sought.
+/// How the smallest error of a window is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WindowSearch {
     /// 4.78, with the exact Hessian.
@@ -23,41 +23,47 @@ pub enum WindowSearch {
     TrustRegion,
 }
 
-/// What an observer does while it cannot see.
+/// What an observer does while the state is not observable.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WhenUnobservable {
-    /// `integrate`: the equations, with the outputs as they are read.
+    /// `integrate`: the equations, with the outputs as measured.
     #[default]
     Integrate,
     /// `hold`: believe what it believed.
     Hold,
 }
 
-/// A window that is lost grows from a part of it with so many readings for each unknown.
+/// A window that is lost grows from a part of it with so many measurements for each unknown.
 const FEWEST: usize = 4;
 
 /// The observer by windows.
 #[derive(Clone, Copy, Debug)]
 pub struct MovingWindow {
-    /// How the smallest error is sought.
+    /// How the smallest error is found.
     pub method: WindowSearch,
     /// Samples of a window.
     pub window: usize,
     /// Steps a window at most.
     pub steps: u64,
-    /// The relative standard deviation, by the bound of Cramér and Rao, from which on something counts as not seen.
-    pub blind: f64,
-    /// What is done where nothing is seen.
-    pub when_blind: WhenUnobservable,
+    /// The relative standard deviation, by the Cramér-Rao bound, above which an unknown counts as unobservable.
+    pub unobservable_above: f64,
+    /// What is done where an unknown is unobservable.
+    pub when_unobservable: WhenUnobservable,
 }
 
 impl MovingWindow {
-    /// Windows of so many samples, five steps each by a region of trust; what is known no better than its own size counts as
-    /// not seen, and is integrated.
+    /// Windows of so many samples, five steps each by a region of trust; an unknown that is known no better than its own size counts as
+    /// unobservable, and is integrated.
     pub fn new(window: usize) -> MovingWindow {
-        let when_blind = WhenUnobservable::default();
-        MovingWindow { method: WindowSearch::TrustRegion, window, steps: 5, blind: 1.0, when_blind }
+        let when_unobservable = WhenUnobservable::default();
+        MovingWindow {
+            method: WindowSearch::TrustRegion,
+            window,
+            steps: 5,
+            unobservable_above: 1.0,
+            when_unobservable,
+        }
     }
 }
 
@@ -100,7 +106,7 @@ impl MovingWindow {
         Window {
             flow: task.full_flow(),
             times: &task.signals.times()[rows.clone()],
-            measured: rows.clone().map(|row| task.readings(row)).collect(),
+            measured: rows.clone().map(|row| task.measurements(row)).collect(),
             start: task.within_bounds(task.full_state(belief, rows.start)),
             bounds: Self::bounds_of(task, clamped),
             free: sought.chain(read).collect(),
@@ -110,7 +116,7 @@ impl MovingWindow {
         }
     }
 
-    /// Between what a window's unknowns lie; nothing where nothing is told.
+    /// The bounds of a window's unknowns; empty where none is given.
     fn bounds_of(task: &Task<'_>, clamped: &[usize]) -> Vec<[f64; 2]> {
         if task.bounds.iter().flatten().all(|bound| bound.is_infinite()) {
             return Vec::new();
@@ -136,15 +142,15 @@ impl MovingWindow {
             return alarm;
         }
         let samples = task.signals.times().len();
-        // all readings at once are one update, however it came to grow
+        // all measurements at once are one update, however it came to grow
         let updates = if task.whole { 1 } else { samples.div_ceil(self.window.max(1)) };
         FALSE_ALARMS / updates.max(1) as f64
     }
 
     /// One update: what is believed of the state at the first of the rows.
     ///
-    /// Where no noise is stated readings are taken as they are first; where something is left that the computation does not explain,
-    /// the first readings are in doubt as all others are, and the size of the errors is that of what is left.
+    /// Where no noise is stated measurements are taken as they are first; where a residual remains that the computation does not explain,
+    /// the first measurements are in doubt as all others are, and the size of the errors is that of the residual.
     pub fn update(
         &self,
         task: &Task<'_>,
@@ -210,7 +216,7 @@ impl MovingWindow {
         if !matches!(update.end, UpdateEnd::Lost(_)) || shorter.len() < self.fewest(task) {
             return update;
         }
-        // an unstable flow leaves a long window from a guess that a part of it makes better
+        // an unstable flow leaves a long window from a guess; a part of the window makes the guess better
         let half = self.attempt(task, belief, &shorter, clamped);
         let again = from(&half.estimate);
         if matches!(again.end, UpdateEnd::Lost(_)) {
@@ -220,7 +226,7 @@ impl MovingWindow {
         Update { steps, seconds, ..again }
     }
 
-    /// The samples of the shortest part of a window that tells something.
+    /// The samples of the shortest part of a window that is informative.
     fn fewest(&self, task: &Task<'_>) -> usize {
         (FEWEST * task.full.states.len()).div_ceil(task.full.outputs.len().max(1)).max(8)
     }
@@ -284,7 +290,7 @@ impl MovingWindow {
         {
             let own = carried.map(|covariance| covariance.select_rows(&free).select_columns(&free));
             for (place, (sample, row)) in samples.iter().zip(rows.clone()).enumerate().skip(skipped) {
-                let read = task.readings(row);
+                let read = task.measurements(row);
                 let residual = sample.outputs.iter().zip(&read).map(|(seen, read)| seen - read).collect();
                 let state = sample.state[..sought].to_vec();
                 let deviations = match (&own, from.covariance) {
@@ -305,7 +311,7 @@ impl MovingWindow {
         }
         track.unobserved += rows.len() - 1;
         let held = || vec![belief.to_vec(); rows.len()];
-        let states = match self.when_blind {
+        let states = match self.when_unobservable {
             WhenUnobservable::Hold => held(),
             WhenUnobservable::Integrate => task.integrate(belief, rows.clone()).unwrap_or_else(|lost| {
                 track.remarks.push(format!("could not be integrated either, and was held: {lost}"));
@@ -327,7 +333,7 @@ pub(super) struct Known<'a> {
     pub state: &'a [f64],
     /// Its covariance, where there is one.
     pub covariance: Option<&'a DMatrix<f64>>,
-    /// Whether the readings told it.
+    /// Whether the measurements determined it.
     pub sees: bool,
     /// Whether they bore it out against a noise that was stated.
     pub is_tested: bool,
@@ -335,7 +341,7 @@ pub(super) struct Known<'a> {
 
 /// What came of following it.
 pub(super) struct Followed {
-    /// What is believed of what is sought at the last row.
+    /// What is believed of the estimated states at the last row.
     pub belief: Vec<f64>,
     /// How well the state is known at the first and the last row, where it is.
     pub ends: Option<[Spread; 2]>,

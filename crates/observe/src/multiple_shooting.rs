@@ -1,9 +1,9 @@
 //! The observer that needs no guess near the truth: multiple shooting from several places of the sample box, and all that fits.
 //!
-//! A window is cut into segments (`nodes`), whose states are sought with joints that stiffen (`stiff_joints`): from the guess, and from
+//! A window is cut into segments (`nodes`), whose states are found with joints that stiffen (`stiff_joints`): from the guess, and from
 //! states drawn from the model's sample box, whose ranges bound the search and not the answer. What they come to is where the region of
 //! trust begins on the whole window, and its update is the answer, with its bound and its test of fit. Where several states fit as well, all are
-//! given: the outputs do not tell them apart, as where they leave a mirror image.
+//! given: the outputs do not distinguish them, as where a mirror image fits too.
 
 use super::ending::{LAST_STEPS, is_refuted};
 use super::nodes::Segments;
@@ -25,15 +25,15 @@ struct Candidate {
     state: Vec<f64>,
     steps: u64,
     refused: usize,
-    /// What it leaves is far more than noise explains.
+    /// Its residual is far above what noise explains.
     is_far: bool,
 }
 
 /// The states to which the segments of some rows led.
 struct Candidates {
-    /// Those that leave least first.
+    /// Those of least residual first.
     all: Vec<Candidate>,
-    /// Whether most starts came to what leaves least: then that is no false minimum, as far as starts can tell.
+    /// Whether most starts came to the least residual: then that is no false minimum, as far as starts can tell.
     is_met_by_most: bool,
 }
 
@@ -64,33 +64,33 @@ pub struct MultipleShooting {
     pub shooting: Shooting,
 }
 
-/// The tolerance of the integration while nodes are sought, in parts of one, or of the smallest size of a state where that is less: a hundredth of the
+/// The tolerance of the integration while nodes are searched for, relative to one, or to the smallest size of a state where that is less: a hundredth of the
 /// difference that ends the search.
 const TOLERANCE: f64 = 1e-6;
 
-/// Of the states that were found, so many of the best ones that are not one are followed to their end.
+/// Of the different states that were found, so many of the best are followed to their end.
 const MOST_ENDS: usize = 4;
 
-/// A mean square of the differences, in units of the spreads, that is enough for a search, beside what noise leaves.
+/// A mean square of the differences, in units of the spreads, that is enough for a search, beside the noise.
 const ENOUGH: f64 = 1e-8;
 
 /// A mean square of the differences, in units of the spreads, from which on a search has hardly explained anything; and so often what is enough.
 const FAR: f64 = 0.05;
 const ENOUGH_FAR: f64 = 100.0;
 
-/// What leaves so many times as much as the best one is followed after all others.
+/// A state with so many times the residual of the best one is followed after all others.
 const FAR_FROM_BEST: f64 = 100.0;
 
-/// Two searches came to the same that leave the same but for this part.
+/// Two searches came to the same end whose residuals agree but for this part.
 const ALIKE: f64 = 0.05;
 
 /// States that are no farther from each other than this part of the sizes are in one basin: a search by segments ends before it knows its end better.
 const SAME_BASIN: f64 = 1e-3;
 
-/// A window is halved as long as a half has so many readings for each unknown.
+/// A window is halved as long as a half has so many measurements for each unknown.
 const FEWEST: usize = 4;
 
-/// Two states are one that are no farther apart than this part of the sizes, or than so many of their deviations.
+/// Two states are the same that differ by no more than this part of the sizes, or than so many of their deviations.
 const SAME: (f64, f64) = (1e-5, 6.0);
 
 impl MultipleShooting {
@@ -104,11 +104,12 @@ impl MultipleShooting {
         MovingWindow { method: WindowSearch::TrustRegion, steps, ..self.window }
     }
 
-    /// What explains the rows: the best state first, then others that fit as well.
+    /// The states that explain the rows: the best first, then others that fit as well.
     ///
     /// Where nothing fits on the whole window, segments half as long may meet fewer false minima, and what fits on its first half is where the search on the whole
-    /// begins next: over a shorter time there are fewer as well. What segments leave far more of than noise explains is one as a rule, and is followed to its end only after that.
-    /// Where most starts came to one end, by these segments and by those, and a noise that is known does not explain what it leaves, the model is wrong: nothing more is tried.
+    /// begins next: over a shorter time there are fewer as well. Segments whose residual is far above the noise mostly met one, and are followed to their end
+    /// only after that. Where most starts came to one end, by these segments and by those, and a known noise does not explain its residual, the model is wrong:
+    /// nothing more is tried.
     pub fn solutions(
         &self,
         task: &Task<'_>,
@@ -189,7 +190,7 @@ impl MultipleShooting {
         }
     }
 
-    /// The states to which the segments of the whole window lead, those that leave least first.
+    /// The states to which the segments of the whole window lead, those of least residual first.
     fn candidates(
         &self,
         task: &Task<'_>,
@@ -246,19 +247,19 @@ impl MultipleShooting {
     ) -> Segments<'t> {
         let (model, times) = (&task.full, task.signals.times());
         let base = task.full_state(belief, rows.start);
-        let at_rest = |place: &usize| model.is_at_rest(*place);
+        let at_rest = |place: &usize| model.is_constant_state(*place);
         let free: Vec<usize> =
             (0..base.len()).filter(|place| !clamped.contains(place) || !at_rest(place)).collect();
         let (constant, moving) = free.into_iter().partition(at_rest);
-        let read: Vec<Vec<f64>> = rows.clone().map(|row| task.readings(row)).collect();
+        let read: Vec<Vec<f64>> = rows.clone().map(|row| task.measurements(row)).collect();
         let spread_of = |values: Vec<f64>| {
             let low = values.iter().copied().fold(f64::INFINITY, f64::min);
             let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let least = (1e-6 * low.abs().max(high.abs())).max(task.sigma);
-            // of what was not measured here nothing is told
+            // nothing is known of an output that was not measured here
             if high < low { task.sigma } else { ((high - low) / 2.0).max(least) }
         };
-        // nothing is read of an implicit output: it is as large as at the guess
+        // an implicit output has no measurement: its size is that at the guess
         let first = task.full_flow().follow(&base, &[], &times[rows.start..=rows.start], super::Order::Value);
         let guessed = first.ok().and_then(|mut samples| Some(samples.pop()?.outputs)).unwrap_or_default();
         let spread = (0..model.outputs.len()).map(|output| match guessed.get(output) {
@@ -273,7 +274,7 @@ impl MultipleShooting {
                 let column = task.signals.column(model.column_of(place)?);
                 Some(spread_of(column[rows.clone()].to_vec()))
             };
-            // what is read may go far beyond where it begins
+            // measurements may go far beyond their first value
             let size = sampled.or(own).unwrap_or(0.0).max(column().unwrap_or(0.0));
             if size > 0.0 { size } else { 1.0 }
         };
@@ -360,7 +361,7 @@ fn best_first(task: &Task<'_>, mut updates: Vec<Update>) -> Vec<Update> {
             _ if update.is_borne_out() => 0,
             UpdateEnd::DoesNotFit | UpdateEnd::Stuck | UpdateEnd::Converged => 1,
             UpdateEnd::StepsSpent => 2,
-            UpdateEnd::Blind { .. } => 3,
+            UpdateEnd::Unobservable { .. } => 3,
             UpdateEnd::Lost(_) => 4,
         };
         (standing, is_out)

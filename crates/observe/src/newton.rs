@@ -10,7 +10,7 @@ pub(super) type Iteration = IterState<DVector<f64>, DVector<f64>, (), DMatrix<f6
 
 /// A step shorter than this fraction of the unknowns' sizes ends the search.
 const SHORTEST: f64 = 1e-13;
-/// And so does one shorter than this that does not lower the error any more: what is left is rounding.
+/// And so does one shorter than this that does not lower the error any more: the rest is rounding.
 const SHORT: f64 = 1e-9;
 /// A step is halved so often at most.
 const HALVINGS: usize = 12;

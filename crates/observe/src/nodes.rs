@@ -1,8 +1,8 @@
-//! A window cut into segments, each with a state of its own at its beginning: what the readings and the joints between segments
+//! A window cut into segments, each with an initial state of its own: what the measurements and the joints between segments
 //! say of these states, to first order.
 //!
-//! A segment is short, so that a guess far from the truth can be followed to its end where the whole window could not. What is joined
-//! is not exact here: the joints are residuals as the readings are, with a weight (`stiff_joints` seeks with it).
+//! A segment is short, so that a guess far from the truth can be followed to its end where the whole window could not. The joints
+//! are not exact here: they are residuals as the measurements are, with a weight (`stiff_joints` minimises them).
 
 use super::{Lost, ModelFlow, Order};
 use nalgebra::{DMatrix, DVector};
@@ -13,15 +13,15 @@ pub(super) struct Segments<'a> {
     pub flow: ModelFlow<'a>,
     /// In s; of the window's samples.
     pub times: &'a [f64],
-    /// What was read, a row a sample; NaN where an output was not measured.
+    /// The measurements, a row a sample; NaN where an output was not measured.
     pub measured: Vec<Vec<f64>>,
     /// The samples of each segment; the last one of a segment is the first of the next.
     pub rows: Vec<Range<usize>>,
     /// The places of the states that move.
     pub moving: Vec<usize>,
-    /// The places of the constants that are sought.
+    /// The places of the constants that are estimated.
     pub constant: Vec<usize>,
-    /// What is not sought, and the first values of the rest: a whole state.
+    /// What is not estimated, and the first values of the rest: a whole state.
     pub base: Vec<f64>,
     /// The magnitude of each state.
     pub sizes: Vec<f64>,
@@ -43,7 +43,7 @@ impl Bounds {
     }
 }
 
-/// The states at the beginnings of all segments, and the constants.
+/// The initial states of all segments, and the constants.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Nodes {
     /// The moving states, a vector a segment.
@@ -51,7 +51,7 @@ pub(super) struct Nodes {
     pub constant: DVector<f64>,
 }
 
-/// A segment to first order, in units of the sizes: what it expects minus what was read, and the gap to the next segment.
+/// A segment to first order, in units of the sizes: expected minus measured, and the gap to the next segment.
 pub(super) struct Segment {
     pub differences: DVector<f64>,
     pub by_moving: DMatrix<f64>,
@@ -70,7 +70,7 @@ impl Segments<'_> {
         (0..self.rows.len()).map(|place| self.segment(nodes, place)).collect()
     }
 
-    /// The whole state at the beginning of a segment.
+    /// The whole state at the first sample of a segment.
     pub fn state(&self, nodes: &Nodes, place: usize) -> Vec<f64> {
         let mut state = self.base.clone();
         for (i, value) in self.moving.iter().zip(nodes.moving[place].iter()) {
@@ -162,7 +162,7 @@ impl Segment {
         own.chain(gap).all(|value| value.is_finite())
     }
 
-    /// The sum of the squares of what is left, the gap with a weight.
+    /// The sum of the squares of the residuals, the gap with a weight.
     pub fn cost(&self, weight: f64) -> f64 {
         let gap = self.gap.as_ref().map_or(0.0, |(gap, _, _)| weight * weight * gap.norm_squared());
         self.differences.norm_squared() + gap

@@ -1,4 +1,4 @@
-//! What the rank has found of a motion, and whether it objects to an observer that would answer there.
+//! The rank along a motion, and whether it objects to an observer that would answer there.
 
 use std::fmt;
 
@@ -11,20 +11,20 @@ pub struct PoleMet {
     pub time: f64,
 }
 
-/// What the rank says of a motion through a window.
+/// The observability rank along a motion through a window.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionRankFound {
-    /// At so many samples it was asked.
+    /// The number of samples that were examined.
     pub asked: usize,
-    /// At so many of them there was no pole.
+    /// The number of those without a pole.
     pub decided: usize,
-    /// The least rank, 0 where none was decided; of the same where all is seen.
+    /// The least rank, 0 where none was decided; equal to `of` where all states are observable.
     pub rank: usize,
     /// How many states are followed.
     pub of: usize,
-    /// So many derivatives of each output were taken beside it: more may see more.
+    /// So many derivatives of each output were taken beside it: higher ones may raise the rank.
     pub order: usize,
-    /// Whether each of them is proved for its state, taken as the doubles are.
+    /// Whether each rank is proved for its state, the doubles taken as exact.
     pub certified: bool,
     /// The least singular value at the sample of the worst condition, equilibrated, of what remains without unit rows.
     pub smallest: f64,
@@ -34,7 +34,7 @@ pub struct MotionRankFound {
     pub at: f64,
     /// The first pole that the motion meets.
     pub pole: Option<PoleMet>,
-    /// Why the motion could not be followed to the end of the window: it is known at its beginning alone.
+    /// Why the motion could not be followed to the end of the window: then it is known only at the window's first sample.
     pub lost: Option<String>,
 }
 
@@ -43,7 +43,7 @@ pub struct MotionRankFound {
 pub enum Objection {
     /// Its equations have a pole on the way.
     Pole(PoleMet),
-    /// The outputs and so many of their derivatives do not tell its state at some moment.
+    /// The outputs and so many of their derivatives do not determine its state at some moment.
     Short {
         /// The rank there.
         rank: usize,
@@ -54,7 +54,7 @@ pub enum Objection {
         /// Derivatives that were taken.
         order: usize,
     },
-    /// Its state is hardly seen at some moment.
+    /// Its state is badly conditioned at some moment.
     Condition {
         /// The largest over the smallest singular value there.
         condition: f64,
@@ -83,7 +83,7 @@ impl fmt::Display for Objection {
 }
 
 impl Objection {
-    /// In one word, for machines.
+    /// As one word, for machines.
     pub fn word(&self) -> &'static str {
         match self {
             Objection::Pole(_) => "pole",

@@ -1,6 +1,6 @@
 //! Steps of Dormand and Prince's pair without a room of their own.
 //!
-//! A method of order eight spends thirteen evaluations where six have no error left that doubles could tell: from one sample to the next a step is
+//! A method of order eight spends thirteen evaluations where six have no error that doubles could show: from one sample to the next a step is
 //! taken where the difference of both formulas is below what is tolerated, and nothing is refined ([`QuickSteps::take`]). A search does not
 //! need so much: it goes through many samples in steps as long as the tolerance allows ([`QuickSteps::go_through`]).
 
@@ -37,8 +37,8 @@ pub(super) struct QuickSteps {
 const REST: usize = 16;
 
 impl QuickSteps {
-    /// Takes `y` from one time to another; it stays where the step is too long, which is where both formulas differ by more than the tolerance in parts of
-    /// one or of a value, and that is said.
+    /// Takes `y` from one time to another; it stays where the step is too long, which is where both formulas differ by more than the tolerance relative to
+    /// one or to a value; returns whether the step was taken.
     pub fn take(
         &mut self,
         f: &impl Fn(f64, &[f64], &mut [f64]),
@@ -63,8 +63,9 @@ impl QuickSteps {
         is_small
     }
 
-    /// Takes `y` through increasing times, from the first to the last, in steps as long as the tolerance allows, and tells the place and the state of each
-    /// after the first, interpolated between the steps. Where the rates have kinks or jumps there it `stops` at each of them: that is told before the steps towards it are taken.
+    /// Takes `y` through increasing times, from the first to the last, in steps as long as the tolerance allows, and hands the place and the state of each
+    /// after the first to `tell`, interpolated between the steps. Where the rates have kinks or jumps there, steps end at each of them: `stops` is called
+    /// before the steps towards it.
     ///
     /// # Errors
     /// Where and why it stops.
@@ -147,7 +148,7 @@ impl QuickSteps {
         }
     }
 
-    /// The most that both formulas differ by at the end of a step, in parts of one or of a value; no number where the end is none.
+    /// The most that both formulas differ by at the end of a step, relative to one or to a value; no number where the end is none.
     fn error(&self, length: f64, y: &[f64]) -> f64 {
         let one = |i: usize| {
             let off: f64 = self.rates.iter().zip(&DIFFERENCE).map(|(rate, part)| part * rate[i]).sum();

@@ -18,7 +18,7 @@ pub const TIME: &str = "t";
 /// What moves, and what moves it.
 #[derive(Clone, Debug, Default)]
 pub struct ResponseQuestion {
-    /// States at the first time, and values of parameters that are others than in the file.
+    /// States at the first time, and values of parameters that replace those in the file.
     pub start: BTreeMap<String, f64>,
     /// Functions of the time `t`, by the names of the signals or parameters that they stand for.
     pub functions: BTreeMap<String, String>,
@@ -45,7 +45,7 @@ pub enum ResponseError {
     /// A function cannot be read.
     #[error("{name} = {text}: {why}")]
     Function { name: String, text: String, why: String },
-    /// Nothing is seen.
+    /// There are no outputs.
     #[error("the system has no outputs: there is nothing to read")]
     NoOutput,
     /// There is no value at the first time.
@@ -62,7 +62,7 @@ pub struct Response {
     pub states: Vec<(String, Vec<f64>)>,
     /// The outputs as the file writes them, with their values.
     pub outputs: Vec<(String, Vec<f64>)>,
-    /// What is known of the inputs, with its values: in the file's order.
+    /// The known inputs with their values, in the file's order.
     pub inputs: Vec<(String, Vec<f64>)>,
     /// Constants with the values that were taken: parameters, and states that do not move.
     pub constants: BTreeMap<String, f64>,
@@ -73,7 +73,7 @@ pub struct Response {
 /// The motion of a system from a state that is given.
 ///
 /// # Errors
-/// [`ResponseError`]. A motion that ends before the last time is none: see [`Response::ended`].
+/// [`ResponseError`]. A motion that ends before the last time is no error: see [`Response::ended`].
 pub fn response(
     given: &System,
     question: &ResponseQuestion,
@@ -234,7 +234,7 @@ impl Motion<'_> {
         symbols.map(|symbol| self.moving.iter().position(|other| *other == symbol)).collect()
     }
 
-    /// States, what is seen besides, and where it ended early.
+    /// States, outputs and functions, and where it ended early.
     fn follow(&self, start: &[f64], times: &[f64]) -> Result<(Rows, Rows, Option<Lost>), Lost> {
         let n = self.moving.len();
         let graph = &self.system.graph;

@@ -1,7 +1,7 @@
 //! Where the search of a first window comes to nothing: searches from other states, within what is said of where the state lies.
 //!
-//! A search goes down into the basin in which it begins, and along a valley to its end by second derivatives. Where its end does not explain the readings it begins again: in the middle of the bounds or the file's
-//! ranges, and then at points that fill them evenly (J. H. Halton, 1960). The first end that explains the readings is the answer. Where three
+//! A search goes down into the basin in which it begins, and along a valley to its end by second derivatives. Where its end does not explain the measurements it begins again: in the middle of the bounds or the file's
+//! ranges, and then at points that fill them evenly (J. H. Halton, 1960). The first end that explains the measurements is the answer. Where three
 //! searches have come to one least error that does not, the model has no other that they would find, and they stop.
 
 use super::MovingWindow;
@@ -36,7 +36,7 @@ fn filling(mut number: usize, base: usize) -> f64 {
     sum
 }
 
-/// Within what something that is sought lies: its bounds, and else the range that the file says.
+/// The interval of an unknown: its bounds, and else the range that the file says.
 fn within(task: &Task<'_>, place: usize) -> Option<[f64; 2]> {
     let [low, high] = task.bounds.get(place).copied().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
     if low.is_finite() && high.is_finite() {
@@ -127,15 +127,15 @@ impl MovingWindow {
         if again.is_borne_out() { again } else { found }
     }
 
-    /// Whether a search is at an end that is no answer. What explains the readings without telling what is sought is one: another basin would be another
-    /// explanation, and not the better one. A search whose few steps are spent is at no end.
+    /// Whether a search is at an end that is no answer. A state that explains the measurements is an answer even where they do not determine it: another basin
+    /// would be another explanation, and not the better one. A search whose few steps are spent is at no end.
     fn came_to_nothing(&self, update: &Update) -> bool {
         let explains = update.fit.is_some_and(|fit| fit.fits);
         match update.end {
             UpdateEnd::Converged => false,
             UpdateEnd::StepsSpent => !explains && self.steps >= LAST_STEPS,
             UpdateEnd::Lost(_) => true,
-            UpdateEnd::DoesNotFit | UpdateEnd::Stuck | UpdateEnd::Blind { .. } => !explains,
+            UpdateEnd::DoesNotFit | UpdateEnd::Stuck | UpdateEnd::Unobservable { .. } => !explains,
         }
     }
 }

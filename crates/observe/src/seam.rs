@@ -1,8 +1,8 @@
-//! Where two windows meet: how far apart their estimates are, in the covariance of their difference.
+//! Where two windows meet: the difference of their estimates, in units of its covariance.
 //!
-//! Two windows that know nothing of each other share one sample, and so its readings' errors: with `A` and `B` the covariances of the two errors with those of the
-//! readings, and `R` the readings' own, the difference has the covariance `P + Q - A R^-1 B^T - B R^-1 A^T`. A window that has inherited what the one before it learned
-//! differs from that by what its own readings add, and the difference has the covariance `P - Q` (as that of an innovation).
+//! Two windows that know nothing of each other share one sample, and so its measurements' errors: with `A` and `B` the covariances of the two errors with those of the
+//! measurements, and `R` the measurements' own, the difference has the covariance `P + Q - A R^-1 B^T - B R^-1 A^T`. A window that has inherited what the one before it learned
+//! differs from that by what its own measurements add, and the difference has the covariance `P - Q` (as that of an innovation).
 
 use super::chi_square::exceeded;
 use super::learned::Spread;
@@ -18,7 +18,7 @@ const KNOWN: f64 = 0.1;
 /// A direction with a smaller part of its variance is one in which nothing is added, or rounding.
 const LEAST: f64 = 1e-6;
 
-/// The seam of two windows at a time; none where one of them is not tested, or they tell nothing in common.
+/// The seam of two windows at a time; none where one of them is not tested, or no direction is determined by both.
 pub(super) fn between(
     task: &Task<'_>,
     time: f64,
@@ -44,11 +44,11 @@ pub(super) fn between(
             true => &before.covariance - &after.covariance,
             false => {
                 let own = |output: usize| task.output_errors(output).variance();
-                let outputs = before.by_reading.ncols();
+                let outputs = before.by_measurement.ncols();
                 let back = DMatrix::from_fn(outputs, outputs, |i, j| {
                     if i == j && own(i) > 0.0 { 1.0 / own(i) } else { 0.0 }
                 });
-                let shared = &before.by_reading * back * after.by_reading.transpose();
+                let shared = &before.by_measurement * back * after.by_measurement.transpose();
                 &before.covariance + &after.covariance - &shared - shared.transpose()
             }
         };

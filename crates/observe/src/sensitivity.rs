@@ -24,7 +24,7 @@ const FRACTIONS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 /// what is done with them grows as the number of samples.
 #[derive(Clone, Debug)]
 pub(super) struct Sensitivity {
-    /// What each sample of the window sees of the state's error and of its own readings' errors.
+    /// How each sample of the window depends on the state's error and on its own measurements' errors.
     pub samples: Vec<Seen>,
     /// From each sample of the window to the next.
     pub steps: Vec<Step>,
@@ -274,7 +274,7 @@ mod tests {
 
     /// The derivative by every sample against differences of the flow's own integrator, in a window within the recording. A sample acts on the state
     /// for about as long as an interval between samples, of which there are some of 0.09 s; two steps of the fourth order on polynomials of degree
-    /// seven leave half a percent of that at most, however near to each other the samples are.
+    /// seven err by half a percent of that at most, however near to each other the samples are.
     #[test]
     fn slopes_are_what_a_sample_changes() {
         for scale in [1.0, 0.5, 0.1] {
@@ -323,7 +323,7 @@ mod tests {
                 worst = worst.max((slope - own).amax());
             }
         }
-        // outputs see their own sample at once, and what it did to the state later
+        // outputs depend on their own sample at once, and on what it did to the state later
         assert!(largest > 0.5, "{largest}");
         worst
     }

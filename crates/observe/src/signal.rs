@@ -1,4 +1,4 @@
-//! What is known of time: columns of measurements, and the curves that run through them.
+//! What is known over time: columns of measurements, and the curves that run through them.
 
 use super::Interpolation;
 use num_dual::{Dual64, DualNum};
@@ -38,7 +38,7 @@ pub struct Signals {
     points: usize,
     interpolation: Interpolation,
     unit: f64,
-    /// The samples that are looked at; those beside them carry the curves alone.
+    /// The samples that are shown; those beside them carry the curves alone.
     shown: std::ops::Range<usize>,
 }
 
@@ -92,7 +92,7 @@ impl Signals {
         Ok(bare.interpolated(interpolation))
     }
 
-    /// The same that go otherwise from one sample to the next.
+    /// The same with another interpolation between samples.
     pub fn interpolated(self, interpolation: Interpolation) -> Signals {
         let points = interpolation.points(POINTS).min(self.times.len());
         let weight = |run: &[f64], i: usize| -> f64 {
@@ -124,7 +124,7 @@ impl Signals {
         self.column(place).iter().all(|value| !value.is_nan())
     }
 
-    /// The same of which some samples are looked at, and the others carry the curves beside them: a part of a longer recording.
+    /// The same with some samples shown; the others only carry the curves beside them: a part of a longer recording.
     ///
     /// # Panics
     /// When there are no such samples.

@@ -29,7 +29,7 @@ impl Observer for Smoother {
             let next = passed.get(place + 1).and_then(|next| next.predicted.as_ref());
             let (state, covariance) = match (later, next) {
                 (Some((there, spread)), Some(next)) => {
-                    // of what has no inverse in doubles nothing is learned from later
+                    // a covariance without an inverse in doubles is not corrected by later samples
                     let gain = inverse(&next.covariance).map_or_else(
                         || DMatrix::zeros(there.len(), there.len()),
                         |inverse| &own.covariance * next.flow.transpose() * inverse,
@@ -52,7 +52,7 @@ impl Observer for Smoother {
     }
 }
 
-/// The inverse of a covariance; of what is known exactly nothing is learned, and it has none. None where a number is not finite.
+/// The inverse of a covariance. None where it is singular, since what is known exactly is not corrected, or where a number is not finite.
 fn inverse(covariance: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let sizes = covariance.diagonal().map(|variance| if variance > 0.0 { variance.sqrt() } else { 1.0 });
     let scaled = DMatrix::from_fn(covariance.nrows(), covariance.ncols(), |i, j| {

@@ -1,4 +1,4 @@
-//! Where multiple shooting begins, and within what it seeks: what the file says of the sample box, and what was read.
+//! Where multiple shooting begins, and the bounds of its search: from the sample box in the file, and the measurements.
 
 use super::nodes::{Bounds, Nodes, Segments};
 use super::task::Task;
@@ -25,8 +25,8 @@ pub(super) fn is_angle(task: &Task<'_>, place: usize) -> bool {
     symbol.is_some_and(|symbol| system.is_angle(symbol))
 }
 
-/// Within what states are sought: at first within the ranges of the file, wider by their own width to both sides, later anywhere; where signs are
-/// kept, on the same side of zero all the time. Ranges say where states begin, and a motion may leave them and change sign: one half of the
+/// The bounds of the states in a search: at first the ranges of the file, wider by their own width to both sides, later none; where signs are
+/// kept, on the same side of zero all the time. Ranges hold for initial states, and a motion may leave them and change sign: one half of the
 /// starts keeps signs, the other does not. Whole turns are no bound.
 pub(super) fn bounds(task: &Task<'_>, are_signs_kept: bool) -> Bounds {
     let one = |place: usize| {

@@ -1,10 +1,10 @@
 //! Multiple shooting by least squares with joints that stiffen.
 //!
-//! The states at the nodes and the constants minimise `|r|^2 + w^2 |g|^2`, `r` being expected minus read and `g` the gaps
-//! between segments. While `w` is small the readings pull the nodes to where they have to be, each for itself; as it grows the gaps
-//! close, and what is left is the motion that explains the readings best. Continuity as a hard constraint (H. G. Bock, 1983, with its
+//! The states at the nodes and the constants minimise `|r|^2 + w^2 |g|^2`, `r` being expected minus measured and `g` the gaps
+//! between segments. While `w` is small the measurements pull the nodes to where they have to be, each for itself; as it grows the gaps
+//! close, and the result is the motion that explains the measurements best. Continuity as a hard constraint (H. G. Bock, 1983, with its
 //! condensed system) would close them in the first step, along sensitivities that mean nothing as long as the nodes are far from a motion: from
-//! the middle of a sample box that is where one is. Soft joints that stiffen keep every step small and need no merit function; what they leave
+//! the middle of a sample box they are. Soft joints that stiffen keep every step small and need no merit function; what remains
 //! of a gap at the end is closed by the region of trust on the whole window, so that the answer is a motion of the model.
 //!
 //! Each step is Levenberg and Marquardt's, by orthogonal factors of one node after the other, with the constants as a border: the work
@@ -31,7 +31,7 @@ const MOST_REFUSED: usize = 12;
 /// Where a search came to.
 pub(super) struct Found {
     pub nodes: Nodes,
-    /// The sum of the squares of expected minus read, in units of the spreads.
+    /// The sum of the squares of expected minus measured, in units of the spreads.
     pub rms_residual: f64,
     /// The sum of the squares of the gaps, in units of the sizes.
     pub gaps: f64,
@@ -39,7 +39,7 @@ pub(super) struct Found {
     pub refused: usize,
 }
 
-/// The nodes that explain the readings of the segments best, near some nodes and within bounds. A mean square of the differences, in units
+/// The nodes that explain the measurements of the segments best, near some nodes and within bounds. A mean square of the differences, in units
 /// of the spreads, that is no more than `enough` ends the search where the gaps are narrow: the rest is for the whole window.
 ///
 /// # Errors
@@ -153,7 +153,7 @@ fn after(here: &[Segment], weight: f64, step: &Nodes) -> f64 {
 
 /// The step that minimises the linear model's error and `damping^2` times its own length squared, in units of the sizes.
 ///
-/// Node by node: the rows that know of a node (what was carried over, its readings, its damping, its joint) are made triangular; the first
+/// Node by node: the rows that know of a node (what was carried over, its measurements, its damping, its joint) are made triangular; the first
 /// of them give the node by the next one and the constants, and the rest is carried over.
 fn damped(here: &[Segment], weight: f64, damping: f64) -> Option<Nodes> {
     let n = here.first()?.by_moving.ncols();

@@ -8,14 +8,14 @@ pub struct Suspect {
     /// What it is.
     pub kind: SuspectKind,
     /// The least error that is noticed with a probability of 0.99, by a test that says of a right model once in a thousand runs that it
-    /// does not fit; relative, of a delay in s. None where no error can be told from the unknowns.
+    /// does not fit; relative, of a delay in s. None where no error can be distinguished from the unknowns.
     pub noticed: Option<f64>,
     /// By how much each estimate is off for each unit (100 %, or 1 s) by which the truth exceeds what is believed.
     pub shifts: Vec<f64>,
-    /// By how much the truth would have to exceed what is believed to explain the readings best, and the sum of squares that this takes
+    /// By how much the truth would have to exceed what is believed to explain the measurements best, and the sum of squares that this takes
     /// off the residual.
     pub explains: (f64, f64),
-    /// Those others whose errors leave the same trace: from these it cannot be told.
+    /// Other suspects whose errors have the same trace: it cannot be distinguished from these.
     pub same_as: Vec<String>,
 }
 
@@ -43,7 +43,7 @@ impl std::fmt::Display for Suspect {
 }
 
 impl Suspect {
-    /// An error of it in words: in percent, or of a delay in ms.
+    /// An error of it as text: in percent, or of a delay in ms.
     pub fn in_words(&self, error: f64) -> String {
         match self.kind {
             SuspectKind::Delay => format!("{:.2e} ms", 1e3 * error),

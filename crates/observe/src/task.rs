@@ -18,31 +18,31 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub struct Task<'a> {
     /// What was measured.
     pub signals: &'a Signals,
-    /// The model that follows what is sought, first, and then the outputs that are states themselves.
+    /// The model that follows the estimated states, first, and then the outputs that are states themselves.
     pub full: Arc<Model>,
-    /// The model that follows what is sought alone and takes the outputs from the signals.
+    /// The model that follows the estimated states alone and takes the outputs from the signals.
     pub reduced: Arc<Model>,
-    /// The first guess of what is sought.
+    /// The first guess of the estimated states.
     pub guess: Vec<f64>,
-    /// The magnitudes of what is sought; by custom those of the first guess.
+    /// The magnitudes of the estimated states; by custom those of the first guess.
     pub sizes: Vec<f64>,
-    /// What an observer may not change in its first window, by place among what is sought.
+    /// The states that an observer may not change in its first window, by place among the estimated ones.
     pub clamped: Vec<usize>,
-    /// The standard deviation of the readings of the outputs, in their unit; positive. Where no noise is stated the least that is
-    /// believed of any reading.
+    /// The standard deviation of the measurements of the outputs, in their unit; positive. Where no noise is stated the least that is
+    /// believed of any measurement.
     pub sigma: f64,
-    /// What is known of the readings' errors: by it a residual is judged.
+    /// What is known of the measurements' errors: by it a residual is judged.
     pub noise: Noise,
     /// What is known of the errors of single columns, by name: of an output in the place of `noise`, of a column that drives the model
     /// beside it. A column that is not there drives the model without error.
     pub errors: BTreeMap<String, MeasurementErrors>,
-    /// What the rounding of the samples' times may add to a reading, in the outputs' unit.
+    /// What the rounding of the samples' times may add to a measurement, in the outputs' unit.
     pub timing: f64,
-    /// Whether the readings are taken as they are for the first values of the outputs, because they have no error.
+    /// Whether the measurements are taken as they are for the first values of the outputs, because they have no error.
     pub exact: bool,
     /// Whether a window begins with what the ones before it have learned.
     pub inherit: bool,
-    /// What is known of each of what is sought: it lies in this range.
+    /// For each estimated state the range in which it is known to lie.
     pub bounds: Vec<[f64; 2]>,
     /// How residuals are weighed.
     pub loss: Loss,
@@ -62,7 +62,7 @@ pub struct Task<'a> {
     pub(super) stride: Stride,
     /// Set from outside to stop: what is done by then is given back.
     pub interrupt: &'a AtomicBool,
-    /// What the models were made from, for who asks what else they could have been.
+    /// What the models were made from, for those who ask what else they could have been.
     pub source: Arc<(System, EstimateQuestion)>,
 }
 
@@ -79,7 +79,7 @@ pub struct EstimateQuestion {
     pub inputs: Vec<(String, String)>,
 }
 
-/// The tolerance of a search that is far from its end, in parts of one, or of the smallest size of what is sought where that is less.
+/// The tolerance of a search that is far from its end, relative to one, or to the smallest size of an estimated state where that is less.
 const ROUGH: f64 = 1e-8;
 
 /// The default of [`Task::tolerance`].
@@ -105,7 +105,7 @@ impl<'a> Task<'a> {
             inputs: wanted.inputs.clone(),
         };
         let reduced = Model::new(system, &question(names.clone()), signals)?;
-        // an output is followed where its rate depends on what is sought: the others say nothing
+        // an output is followed where its rate depends on the estimated states: the others say nothing
         let mut followed = names.clone();
         for name in outputs {
             if !names.contains(name) && signals.find(name).is_some() && !wanted.known.contains_key(name) {
@@ -122,7 +122,7 @@ impl<'a> Task<'a> {
         }
         let full = Model::new(system, &question(followed), signals)?;
         if full.outputs.is_empty() {
-            return Err(ModelError::Blind);
+            return Err(ModelError::Unobservable);
         }
         let no_output = |name: &&String| match CalibrationKind::of(name) {
             Some((column, CalibrationKind::Delay)) => !full.outputs.iter().any(|output| output == column),
@@ -134,9 +134,9 @@ impl<'a> Task<'a> {
         let guess: Vec<f64> = wanted.guess.iter().map(|(_, value)| *value).collect();
         let largest = guess.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         let size = |(name, value): &(String, f64)| match CalibrationKind::of(name) {
-            // a delay is held against the time between two samples
+            // a delay is compared with the time between two samples
             Some((_, CalibrationKind::Delay)) => signals.between(),
-            // a bias is held against what is read
+            // a bias is compared with the measurements
             Some((column, CalibrationKind::Bias)) => {
                 let read = signals.find(column).map_or(&[][..], |place| signals.column(place));
                 let most = read.iter().fold(0.0f64, |most, value| most.max(value.abs()));
@@ -173,7 +173,7 @@ impl<'a> Task<'a> {
         })
     }
 
-    /// The same task with other readings: the columns are those of the signals that it was made for, in their order.
+    /// The same task with other measurements: the columns are those of the signals that it was made for, in their order.
     pub fn with_signals<'b>(&self, signals: &'b Signals) -> Task<'b>
     where
         'a: 'b,
@@ -181,7 +181,7 @@ impl<'a> Task<'a> {
         Task { signals, ..self.clone() }
     }
 
-    /// The errors of an output of which nothing else is known.
+    /// The errors of an output without errors of its own.
     pub(super) fn common_errors(&self) -> MeasurementErrors {
         match self.noise {
             Noise::Stated { normal, rounding } => MeasurementErrors { normal, rounding },
@@ -209,13 +209,13 @@ impl<'a> Task<'a> {
         ModelFlow { model: &self.full, signals: self.signals, tolerance: self.tolerance, stride: self.stride }
     }
 
-    /// The full state at a sample: what is sought as it is believed, the outputs as they are read there.
+    /// The full state at a sample: the estimated states as believed, the outputs as measured there.
     pub fn full_state(&self, sought: &[f64], row: usize) -> Vec<f64> {
         let read = |place: usize| self.full.column_of(place).map_or(0.0, |c| self.signals.column(c)[row]);
         (0..self.full.states.len()).map(|i| if i < sought.len() { sought[i] } else { read(i) }).collect()
     }
 
-    /// A full state whose sought part lies where it is told to.
+    /// A full state whose estimated part is moved within the bounds.
     pub(super) fn within_bounds(&self, mut state: Vec<f64>) -> Vec<f64> {
         for (value, [low, high]) in state.iter_mut().zip(&self.bounds) {
             *value = value.max(*low).min(*high);
@@ -223,7 +223,7 @@ impl<'a> Task<'a> {
         state
     }
 
-    /// What of what is sought lies at a bound, by its place, and the bound.
+    /// The estimated states that lie at a bound, by place, and the bound.
     pub(super) fn at_bounds(&self, sought: &[f64]) -> Vec<(usize, f64)> {
         let at = |(place, (value, bounds)): (usize, (&f64, &[f64; 2]))| {
             bounds.iter().find(|bound| *bound == value).map(|bound| (place, *bound))
@@ -231,8 +231,8 @@ impl<'a> Task<'a> {
         sought.iter().zip(&self.bounds).enumerate().filter_map(at).collect()
     }
 
-    /// The standard deviations that a filter begins with: of what is sought a part of its size, none of what is clamped, and of outputs that
-    /// are states the readings' own.
+    /// The standard deviations that a filter begins with: of an estimated state a part of its size, none of what is clamped, and of outputs that
+    /// are states the measurements' own.
     pub(super) fn prior_deviations(&self, part: f64, sigma: f64) -> Vec<f64> {
         let deviation = |place: usize| match self.sizes.get(place) {
             Some(_) if self.clamped.contains(&place) => 0.0,
@@ -242,7 +242,7 @@ impl<'a> Task<'a> {
         (0..self.full.states.len()).map(deviation).collect()
     }
 
-    /// What is believed of the errors of an output: one that is zero has none of its own, but those of the readings in it.
+    /// What is believed of the errors of an output: one that is zero has none of its own, but those of the measurements in it.
     pub(super) fn output_errors(&self, output: usize) -> MeasurementErrors {
         if self.full.is_implicit(output) {
             return MeasurementErrors::default();
@@ -250,7 +250,7 @@ impl<'a> Task<'a> {
         self.errors.get(&self.full.outputs[output]).copied().unwrap_or_else(|| self.common_errors())
     }
 
-    /// Why a method that knows no errors but those of readings does nothing here: some outputs are implicit.
+    /// Why a method that allows errors of measurements only refuses: some outputs are implicit.
     pub(super) fn refuses_implicit(&self) -> Option<String> {
         let names = self.full.outputs.iter().enumerate().filter(|(place, _)| self.full.is_implicit(*place));
         let names: Vec<&str> = names.map(|(_, name)| name.as_str()).collect();
@@ -262,7 +262,7 @@ impl<'a> Task<'a> {
         })
     }
 
-    /// Why a method that needs the curves of all outputs does nothing here: of some not each sample was measured.
+    /// Why a method that needs the curves of all outputs refuses: some were not measured at each sample.
     pub(super) fn refuses_sparse(&self) -> Option<String> {
         let is_sparse =
             |name: &&String| self.signals.find(name).is_some_and(|place| !self.signals.is_whole(place));
@@ -275,13 +275,13 @@ impl<'a> Task<'a> {
         })
     }
 
-    /// What was read of the outputs at a sample; zero of those that are zero, NaN of those that were not measured then.
-    pub(super) fn readings(&self, row: usize) -> Vec<f64> {
+    /// The measurements of the outputs at a sample; zero of implicit outputs, NaN of those that were not measured then.
+    pub(super) fn measurements(&self, row: usize) -> Vec<f64> {
         let read = |column: &Option<usize>| column.map_or(0.0, |column| self.signals.column(column)[row]);
         self.full.measured.iter().map(read).collect()
     }
 
-    /// What is sought, from one sample to a later one by the equations alone, with the outputs as they are read.
+    /// The estimated states, from one sample to a later one by the equations alone, with the outputs as measured.
     ///
     /// # Errors
     /// Where the equations have no value.

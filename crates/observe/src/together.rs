@@ -1,27 +1,28 @@
-//! Several windows together: whether all of them are what the errors of the readings explain, and whether they agree where they meet; and the innovations of
+//! Several windows together: whether all of them are what the errors of the measurements explain, and whether they agree where they meet; and the innovations of
 //! a filter.
 
 use super::chi_square::exceeded;
 use super::fit::FALSE_ALARMS;
 
-/// How far the estimates of two windows are apart where they meet.
+/// How far the estimates of two windows differ where they meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seam {
     /// In s.
     pub time: f64,
     /// The square of the difference in units of its own covariance, less what rounding may add.
     pub chi_square: f64,
-    /// In how many directions both tell.
+    /// In how many directions both determine the state.
     pub degrees: usize,
     /// How likely a difference so large is, were the model right.
     pub probability: f64,
-    /// Whether the difference is what an heir's own readings add to what it inherited: such differences are independent of each other.
+    /// Whether the difference is what the second window's own measurements add to what it inherited: such differences are independent of each other.
     pub is_increment: bool,
 }
 
 impl Seam {
     /// Of two estimates of the same states at a time with the standard deviations of each, where the correlation of their errors is not known: no difference has a
-    /// deviation above the sum of both. No state is an angle. The worst one is told, its probability times the number of states (Bonferroni). None where no state has a deviation on both sides.
+    /// deviation above the sum of both. No state is an angle. The worst state is given, its probability times the number of states (Bonferroni). None where no
+    /// state has a deviation on both sides.
     pub fn of_any_correlation(time: f64, before: [&[f64]; 2], after: [&[f64]; 2]) -> Option<Seam> {
         let [before, before_deviations] = before;
         let [after, after_deviations] = after;
@@ -37,7 +38,7 @@ impl Seam {
         Some(Seam { time, chi_square, degrees: 1, probability, is_increment: false })
     }
 
-    /// Whether two windows of a right model are seldom so far apart.
+    /// Whether two windows of a right model seldom differ so much.
     pub fn is_open(&self) -> bool {
         self.probability < FALSE_ALARMS
     }
@@ -53,7 +54,7 @@ pub struct Together {
     pub probability: f64,
     /// The least likely seam, and how likely it is that one of so many is so unlikely (C. E. Bonferroni, 1936).
     pub worst_seam: Option<(Seam, f64)>,
-    /// How likely it is that the seams of heirs are so unlikely all in all, by the same test of Fisher's; none of fewer than two.
+    /// How likely it is that the seams of inheriting windows are so unlikely all in all, by the same test of Fisher's; none of fewer than two.
     pub seams: Option<f64>,
     /// Whether all three are no less likely than [`FALSE_ALARMS`].
     pub fits: bool,
@@ -66,7 +67,7 @@ pub struct Tested {
     windows: usize,
     seams: usize,
     worst: Option<Seam>,
-    /// Of the seams of heirs, which are independent of each other.
+    /// Of the seams of inheriting windows, which are independent of each other.
     increments: usize,
     sum_of_increments: f64,
 }
@@ -110,15 +111,15 @@ impl Tested {
 pub struct Innovations {
     /// The sum of the normalised squares, `nu^T S^-1 nu` at each sample.
     pub chi_square: f64,
-    /// Readings that were compared.
+    /// Measurements that were compared.
     pub degrees: usize,
     /// How likely a sum so large is, were the filter's covariance and the noise right (Y. Bar-Shalom, X.-R. Li, T. Kirubarajan, Estimation with Applications to
     /// Tracking and Navigation, 2001, section 5.4).
     pub probability: f64,
-    /// The standard deviation of a reading that the filter believes, in its unit.
+    /// The standard deviation of a measurement that the filter believes, in its unit.
     pub sigma: f64,
-    /// How likely innovations are that hang together so much with those of the sample before, were the model right: then they are white (section 5.4.2 there). None of
-    /// a filter that is not the best linear one, whose innovations need not be white, and of few readings.
+    /// How likely innovations are that correlate so much with those of the sample before, were the model right: then they are white (section 5.4.2 there). None
+    /// of a filter that is not the best linear one, whose innovations need not be white, and of few measurements.
     pub whiteness: Option<f64>,
     /// Whether both are no less likely than [`FALSE_ALARMS`].
     pub fits: bool,
@@ -241,7 +242,7 @@ mod tests {
         assert_eq!(Seam::of_any_correlation(2.0, [&[1.0], &[]], [&[1.0], &[0.1]]), None);
     }
 
-    /// By hand: a sum of `n` products of independent numbers has the variance `n`. What is no number is no white noise, and few products tell nothing.
+    /// By hand: a sum of `n` products of independent numbers has the variance `n`. What is no number is no white noise, and few products are not tested.
     #[test]
     fn whiteness_is_that_of_the_sum_of_products() {
         let of = |products: f64, counted: usize| Innovations::of([100.0, products], [100, counted], 1.0, 0.0);

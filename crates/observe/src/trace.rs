@@ -1,8 +1,8 @@
-//! How far a window of readings would show that something is wrong with what is taken for known.
+//! How far a window of measurements would show that something is wrong with what is taken for known.
 //!
-//! An error of a constant, of a gain or of the outputs' time moves the readings along a direction `d`. The part of it that the unknowns can
-//! follow bends the estimate and leaves no trace; only what is left, `e = d - J J^+ d`, shows as a residual. Where `e` is zero
-//! the readings cannot tell the error from the unknowns, whatever its size.
+//! An error of a constant, of a gain or of the outputs' time moves the measurements along a direction `d`. The part of it that the unknowns can
+//! follow biases the estimate and has no trace; only the rest, `e = d - J J^+ d`, shows as a residual. Where `e` is zero
+//! the measurements cannot distinguish the error from the unknowns, whatever its size.
 
 use super::chi_square::noncentrality;
 use super::fit::{Fit, NoiseFrom};
@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector};
 /// Differences are taken so far to both sides, and twice so far, relative to what is varied.
 const STEP: f64 = 1e-3;
 
-/// What is left of a direction below this part of it is an error of the differences.
+/// A rest of a direction below this part of it is an error of the differences.
 const NOTHING: f64 = 1e-6;
 
 /// Two traces whose cosine differs from one by less are one.
@@ -25,14 +25,14 @@ const PARALLEL: f64 = 1e-8;
 /// An error counts as noticed that is found with this probability.
 pub const POWER: f64 = 0.99;
 
-/// A direction in which the readings would move.
+/// A direction in which the measurements would move.
 struct Direction {
     name: String,
     kind: SuspectKind,
     slope: DVector<f64>,
 }
 
-/// The suspects of an update, each with what the readings of its window tell of it; none where the model cannot be followed.
+/// The suspects of an update, each with what the measurements of its window say of it; none where the model cannot be followed.
 pub(super) fn suspects(task: &Task<'_>, window: &Window<'_>, update: &Update, alarm: f64) -> Vec<Suspect> {
     let Some(fit) = update.fit else { return Vec::new() };
     let start = [&update.estimate[..], &update.outputs].concat();
@@ -57,13 +57,13 @@ pub(super) fn suspects(task: &Task<'_>, window: &Window<'_>, update: &Update, al
     judged.into_iter().map(|(suspect, _)| suspect).collect()
 }
 
-/// Whether an update is one of which suspects are asked for: its state is the best one, and the errors of the readings are known.
+/// Whether an update is one of which suspects are asked for: its state is the best one, and the errors of the measurements are known.
 pub(super) fn is_asked(update: &Update) -> bool {
     let stated = update.fit.is_some_and(|fit| fit.from == NoiseFrom::Stated);
     stated && matches!(update.end, UpdateEnd::Converged | UpdateEnd::DoesNotFit)
 }
 
-/// What is left of directions where the unknowns have followed as far as they can.
+/// The rest of directions where the unknowns have followed as far as they can.
 struct Remainder {
     /// The pseudoinverse of the scaled derivatives by its factors, `V / S` and `U^T`; the sizes with it.
     back: DMatrix<f64>,
@@ -109,7 +109,7 @@ impl Remainder {
         let parts = &self.onto * &slope;
         let left = &slope - self.onto.tr_mul(&parts);
         let seen = left.norm();
-        let is_seen = seen > NOTHING * length;
+        let is_observable = seen > NOTHING * length;
         let followed = &self.back * parts;
         let mut shifts = vec![0.0; self.estimated];
         for (place, shift) in self.free.iter().zip(followed.iter()) {
@@ -117,11 +117,11 @@ impl Remainder {
                 *own = *shift;
             }
         }
-        // the differences are expected minus read
-        let error = if is_seen { -left.dot(&here.differences) / (seen * seen) } else { 0.0 };
-        let noticed = is_seen.then(|| needed.sqrt() * fit.sigma / seen);
+        // the differences are expected minus measured
+        let error = if is_observable { -left.dot(&here.differences) / (seen * seen) } else { 0.0 };
+        let noticed = is_observable.then(|| needed.sqrt() * fit.sigma / seen);
         let explains = (error, (error * seen / fit.sigma).powi(2));
-        let trace = if is_seen { left / seen } else { DVector::zeros(slope.len()) };
+        let trace = if is_observable { left / seen } else { DVector::zeros(slope.len()) };
         Some((Suspect { name, kind, noticed, shifts, explains, same_as: Vec::new() }, trace))
     }
 }
@@ -163,7 +163,7 @@ fn directions(task: &Task<'_>, window: &Window<'_>, here: &WindowExpansion) -> V
         let Some(column) = task.signals.find(symbol).filter(|_| !wanted.known.contains_key(symbol)) else {
             continue;
         };
-        // a gain that is sought is under no suspicion
+        // a gain that is estimated is under no suspicion
         if task.full.find(&format!("{symbol}.gain")).is_some() {
             continue;
         }
@@ -186,15 +186,15 @@ fn directions(task: &Task<'_>, window: &Window<'_>, here: &WindowExpansion) -> V
         if task.full.is_implicit(place) || task.full.find(&format!("{name}.gain")).is_some() {
             continue;
         }
-        // a gain multiplies what would be read without errors: those themselves would seem to show any gain
+        // a gain multiplies the measurements without their errors: those themselves would seem to show any gain
         let own = |i: usize, _| if i % outputs == place { read[i] + here.left[i] } else { 0.0 };
         add(name, SuspectKind::OutputGain, Some(DVector::from_fn(read.len(), own)));
     }
-    // a delay that is sought is under no suspicion
+    // a delay that is estimated is under no suspicion
     if task.full.delays.iter().any(Option::is_some) {
         return all;
     }
-    // what is late in an implicit output are its readings, each in its own way
+    // what is late in an implicit output are its measurements, each in its own way
     let modelled = |(i, (off, read)): (usize, (&f64, &f64))| {
         if task.full.is_implicit(i % outputs) { 0.0 } else { off + read }
     };
@@ -207,14 +207,14 @@ fn directions(task: &Task<'_>, window: &Window<'_>, here: &WindowExpansion) -> V
     all
 }
 
-/// The derivative of the readings by the logarithm of something, by differences of the fourth order.
+/// The derivative of the measurements by the logarithm of something, by differences of the fourth order.
 fn difference(at: impl Fn(f64) -> Option<DVector<f64>>) -> Option<DVector<f64>> {
     let [near, far] = [1.0, 2.0].map(|k| Some(at(1.0 + k * STEP)? - at(1.0 - k * STEP)?));
     let slope = (near? * 8.0 - far?) / (12.0 * STEP);
     slope.iter().all(|value| value.is_finite()).then_some(slope)
 }
 
-/// What a flow expects of the readings of a window.
+/// What a flow expects of the measurements of a window.
 fn expected(window: &Window<'_>, flow: &ModelFlow<'_>) -> Result<DVector<f64>, Lost> {
     let samples = flow.follow(&window.start, &[], window.times, Order::Value)?;
     Ok(DVector::from_vec(samples.into_iter().flat_map(|sample| sample.outputs).collect()))

@@ -13,12 +13,12 @@ use std::sync::Arc;
 pub struct SampleEstimate {
     /// In s.
     pub time: f64,
-    /// What is sought.
+    /// The estimated states.
     pub state: Vec<f64>,
-    /// The standard deviation of each, in its unit: by windows the bound of Cramér and Rao of the window, carried along the flow to this sample;
-    /// of a filter by its covariance. Infinite where the readings do not tell it; empty where the observer has none.
+    /// The standard deviation of each, in its unit: by windows the Cramér-Rao bound of the window, carried along the flow to this sample;
+    /// of a filter by its covariance. Infinite where the measurements do not determine it; empty where the observer has none.
     pub deviations: Vec<f64>,
-    /// The outputs that the model expected minus those that were read; empty where the observer compares none.
+    /// The expected outputs minus the measured ones; empty where the observer compares none.
     pub residual: Vec<f64>,
 }
 
@@ -26,17 +26,17 @@ pub struct SampleEstimate {
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)] // names and messages say it
 pub enum UpdateEnd {
-    /// The last step was too short to matter, and what is left is what the errors of the readings explain.
+    /// The last step was too short to matter, and the errors of the measurements explain the residual.
     Converged,
-    /// The last step was too short to matter, and what is left is more than the errors of the readings explain: another model,
+    /// The last step was too short to matter, and the residual is larger than the errors of the measurements explain: another model,
     /// other errors, or a false minimum.
     DoesNotFit,
     /// All steps that were allowed are done.
     StepsSpent,
     /// No step made the error smaller.
     Stuck,
-    /// The readings cannot tell what is sought; the observer held what it believed, or integrated.
-    Blind { weakest: Vec<f64> },
+    /// The measurements do not determine the estimated states; the observer held what it believed, or integrated.
+    Unobservable { weakest: Vec<f64> },
     /// The model could not be followed.
     Lost(Lost),
 }
@@ -50,21 +50,21 @@ pub struct Update {
     pub to: f64,
     /// What is believed of the state at the first time.
     pub estimate: Vec<f64>,
-    /// What is believed of the outputs that are followed, there.
+    /// The values of the followed outputs there, as believed.
     pub outputs: Vec<f64>,
-    /// The least standard deviation that each entry of the estimate could have.
+    /// The Cramér-Rao bound (1 sigma) of each entry of the estimate, linearised there.
     pub deviations: Vec<f64>,
-    /// The covariance of all that is followed, what is sought first: what was not changed has none. Nothing where something is not seen.
+    /// The covariance of all followed states, the estimated ones first: zero of what was not changed. None where something is unobservable.
     pub covariance: Option<Arc<DMatrix<f64>>>,
-    /// What of the estimate lies at a bound that was stated, by its place, and the bound: there the deviation is that of an unknown that is free.
+    /// The estimates that lie at a bound that was stated, by place, and the bound: there the deviation is that of an unknown that is free.
     pub at_bounds: Vec<(usize, f64)>,
-    /// How far it is from where the window before it ended, where both tell.
+    /// Its difference from where the window before it ended, where both determine the state.
     pub seam: Option<Seam>,
     /// The condition of the sensitivities, scaled.
     pub condition: f64,
     /// The error of the output, `k` of 4.77, there.
     pub cost: f64,
-    /// The root of the mean square of expected minus read there, in the outputs' unit.
+    /// The root mean square of expected minus measured there, in the outputs' unit.
     pub rms_residual: f64,
     /// Steps that were taken.
     pub steps: u64,
@@ -74,29 +74,29 @@ pub struct Update {
     pub seconds: f64,
     /// How it ended.
     pub end: UpdateEnd,
-    /// How well it explains the readings, where it was found out.
+    /// How well it explains the measurements, where it was found out.
     pub fit: Option<Fit>,
     /// The name of the output whose residuals drift most, where that was tested.
     pub drifting: Option<String>,
-    /// Whether it counts what the windows before it have learned, beside its own readings.
+    /// Whether it counts what the windows before it have learned, beside its own measurements.
     pub is_heir: bool,
-    /// Readings beyond the corner of a robust loss.
+    /// Measurements beyond the corner of a robust loss.
     pub discounted: usize,
     /// What else might be wrong with the model: for the first update of a track that converged where the noise is stated.
     pub suspects: Vec<Suspect>,
 }
 
 impl Update {
-    /// Whether it has an answer that the readings bear out.
+    /// Whether it has an answer that the measurements bear out.
     pub fn is_borne_out(&self) -> bool {
         let fits = self.fit.is_some_and(|fit| fit.fits);
         fits && matches!(self.end, UpdateEnd::Converged | UpdateEnd::Stuck)
     }
 
-    /// Whether its estimate is no estimate, but what was believed before: the readings do not tell all that is sought. Its deviations are then what readings could tell at best,
-    /// and nothing of how far that belief is from the truth.
+    /// Whether its estimate is only what was believed before: the measurements do not determine all estimated states. Its deviations are then what measurements
+    /// could reach at best, and nothing of how far that belief is from the truth.
     pub fn is_held(&self) -> bool {
-        matches!(self.end, UpdateEnd::Blind { .. })
+        matches!(self.end, UpdateEnd::Unobservable { .. })
     }
 
     /// Whether its search came to no end: its deviations are those of an estimate that is not reached.
@@ -104,7 +104,7 @@ impl Update {
         matches!(self.end, UpdateEnd::StepsSpent | UpdateEnd::Lost(_))
     }
 
-    /// Whether the readings bear it out, and against a noise that was stated.
+    /// Whether the measurements bear it out, and against a noise that was stated.
     pub(super) fn has_tested(&self) -> bool {
         self.is_borne_out() && self.fit.is_some_and(|fit| fit.from == NoiseFrom::Stated)
     }
@@ -112,7 +112,7 @@ impl Update {
     /// Takes part in the tests of all windows together, where it was tested at all.
     pub fn count_in(&self, tested: &mut Tested) {
         let is_at_best =
-            !matches!(self.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_) | UpdateEnd::StepsSpent);
+            !matches!(self.end, UpdateEnd::Unobservable { .. } | UpdateEnd::Lost(_) | UpdateEnd::StepsSpent);
         let fit = self.fit.filter(|fit| is_at_best && fit.from != NoiseFrom::Computation);
         if let Some(fit) = fit {
             tested.window(fit.probability);
@@ -122,7 +122,7 @@ impl Update {
         }
     }
 
-    /// Whether the best state that was found leaves more than the errors of the readings explain.
+    /// Whether the residual of the best state that was found is larger than the errors of the measurements explain.
     pub fn is_contradicted(&self) -> bool {
         let fails = self.fit.is_some_and(|fit| !fit.fits);
         fails && matches!(self.end, UpdateEnd::DoesNotFit | UpdateEnd::Stuck)
@@ -136,15 +136,15 @@ pub struct Track {
     pub estimates: Vec<SampleEstimate>,
     /// Its updates, where it works by windows.
     pub updates: Vec<Update>,
-    /// Other states that fit as well as those of the updates: the readings do not tell them apart.
+    /// Other states that fit as well as those of the updates: the measurements do not distinguish them.
     pub others: Vec<Update>,
-    /// Samples at which it could not see, or not follow its model, and held or integrated instead.
+    /// Samples at which the state was unobservable, or the model could not be followed, and it held or integrated instead.
     pub unobserved: usize,
-    /// Whether the innovations of a filter are what its covariance and the noise of the readings explain; none of other methods.
+    /// Whether the innovations of a filter are what its covariance and the noise of the measurements explain; none of other methods.
     pub innovations: Option<Innovations>,
-    /// What else is to be said.
+    /// Further remarks.
     pub remarks: Vec<String>,
-    /// What is handed to whoever goes on from the last sample.
+    /// What was learned, for the next window or part of a stream.
     pub learned: Option<Arc<Learned>>,
 }
 
@@ -169,7 +169,7 @@ impl Track {
         tested.together()
     }
 
-    /// Whether one of its updates is contradicted by the readings, or all of them together are, or a seam.
+    /// Whether one of its updates is contradicted by the measurements, or all of them together are, or a seam.
     pub fn is_contradicted(&self) -> bool {
         self.updates.iter().any(Update::is_contradicted) || self.together().is_some_and(|all| !all.fits)
     }
@@ -179,7 +179,7 @@ impl Track {
         passes_unwindowed(self.estimates.len(), self.unobserved, self.innovations.as_ref())
     }
 
-    /// Whether one of its updates is borne out by the readings, none is contradicted and each search came to an end: of methods that work by windows. A window in which
+    /// Whether one of its updates is borne out by the measurements, none is contradicted and each search came to an end: of methods that work by windows. A window in which
     /// the model has a pole is no fault of either.
     pub fn is_sound(&self) -> bool {
         let borne_out = self.updates.iter().any(Update::is_borne_out);

@@ -7,13 +7,13 @@ use super::{Learned, Lost, Order};
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 
-/// The unscented Kalman filter in square-root form, with continuous equations and sampled readings.
+/// The unscented Kalman filter in square-root form, with continuous equations and sampled measurements.
 ///
 /// Points `x`, `x +- sqrt(n + kappa) S_i` about the estimate, `S S^T` being its covariance, are followed from sample to sample; mean and
-/// covariance of where they come to are those of the prediction, and of what they expect to be read, of the innovation. The
+/// covariance of where they come to are those of the prediction, and of the outputs expected there, of the innovation. The
 /// covariance is carried by its factor `S` alone, which orthogonal factors of what adds up to it renew: the deviations of the points with their
-/// weights and the noise of the process; behind a reading the deviations less the gain times those of the outputs, and the gain times
-/// the noise of the readings (Joseph's form). As no weight is negative (`kappa >= 0`), nothing is ever subtracted from it, and it cannot lose its
+/// weights and the noise of the process; behind a measurement the deviations less the gain times those of the outputs, and the gain times
+/// the noise of the measurements (Joseph's form). As no weight is negative (`kappa >= 0`), nothing is ever subtracted from it, and it cannot lose its
 /// sign; `kappa = 0` is the cubature filter.
 ///
 /// References: S. J. Julier, J. K. Uhlmann, Unscented filtering and nonlinear estimation, Proc. IEEE 92(3), 2004; R. van der Merwe,
@@ -21,11 +21,11 @@ use serde::Deserialize;
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Unscented {
-    /// The standard deviation of the first guess, relative to the sizes of what is sought.
+    /// The standard deviation of the first guess, relative to the sizes of the estimated states.
     pub prior: f64,
     /// What the equations are believed to miss: standard deviation a second^(1/2), relative to the sizes.
     pub process_noise: f64,
-    /// The least standard deviation that a reading is believed to have, in its unit.
+    /// The least standard deviation that a measurement is believed to have, in its unit.
     pub least_sigma: f64,
     /// How far out the points lie, and the weight `kappa/(n + kappa)` of the one in the middle; not negative.
     pub kappa: f64,
@@ -101,7 +101,7 @@ impl Observer for Unscented {
         let mut root = DMatrix::from_diagonal(&deviations);
         let drive =
             DVector::from_fn(n, |i, _| task.sizes.get(i).map_or(0.0, |size| self.process_noise * size));
-        // what was learned before has read the first sample
+        // what was learned before includes the first sample
         let mut first = 0;
         if let Some((known, spread)) = learned.filter {
             (state, root, first) = (known, spread, 1);
@@ -111,7 +111,7 @@ impl Observer for Unscented {
             if task.interrupted() {
                 break;
             }
-            // at the first sample there is nothing to follow, and something to read
+            // at the first sample there is nothing to follow, and something measured
             if row > 0 {
                 match self.predict(task, &state, &root, &drive, &times[row - 1..=row]) {
                     Ok((there, spread)) => (state, root) = (there, spread),
@@ -119,7 +119,7 @@ impl Observer for Unscented {
                         so_far.track.hold(&lost);
                         let belief = state.as_slice()[..task.estimated()].to_vec();
                         state = DVector::from_vec(task.full_state(&belief, row));
-                        // what is held while the model is lost is known no longer
+                        // a state that is held while the model is lost is no longer known
                         let unknown = DVector::from_element(n, f64::INFINITY);
                         so_far.believe(times[row], state.as_slice(), &unknown, Vec::new());
                         continue;
@@ -127,7 +127,7 @@ impl Observer for Unscented {
                 }
             }
             let mut residual = Vec::new();
-            let noise = so_far.reading_variances().map(f64::sqrt);
+            let noise = so_far.measurement_variances().map(f64::sqrt);
             if let Some((there, spread, innovation)) = self.correct(task, &state, &root, &noise, row) {
                 (state, root) = (there, spread);
                 so_far.compare_white(&innovation);
@@ -173,7 +173,7 @@ impl Unscented {
         Ok((mean, root))
     }
 
-    /// State and factor after a reading whose errors have these deviations, and the innovation; none where that cannot be told.
+    /// State and factor after a measurement whose errors have these deviations, and the innovation; none where nothing was measured or no gain exists.
     fn correct(
         &self,
         task: &Task<'_>,
@@ -189,7 +189,7 @@ impl Unscented {
             let samples = task.full_flow().follow(point.as_slice(), &[], time, Order::Value).ok()?;
             seen.push(DVector::from_vec(samples.into_iter().next()?.outputs));
         }
-        let read = DVector::from_vec(task.readings(row));
+        let read = DVector::from_vec(task.measurements(row));
         let measured = measured(read.as_slice());
         if measured.is_empty() {
             return None;

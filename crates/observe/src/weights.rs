@@ -1,14 +1,14 @@
 //! What the errors of all columns make of the differences in a window: a covariance that is not white, and differences in units in
 //! which it is.
 //!
-//! An output's reading has an error of its own. A column that drives the model errs too, and its errors reach all later samples through
+//! An output's measurement has an error of its own. A column that drives the model errs too, and its errors reach all later samples through
 //! the model: with `S` the derivative of what is expected by the samples of the columns, and `V` the covariance of their errors, the
 //! differences of the true state have the covariance `C = R + S V S^T`. Least squares with `W` for which `W C W^T = 1` is as good as an
 //! estimate from these measurements can be (A. C. Aitken, On least squares and linear combination of observations, 1935); the true
 //! values of the columns are estimated with it, by `V S^T C^-1` of the differences, and `S` is taken there.
 //!
-//! An implicit output, `0 = y(x, reading)`, is one whose reading is zero and has no error of its own: its row of `S` has `dy/dreading` at its
-//! own sample, beside what the readings do through the motion.
+//! An implicit output, `0 = y(x, measurement)`, is one whose measurement is zero and has no error of its own: its row of `S` has `dy/dreading` at its
+//! own sample, beside what the measurements do through the motion.
 
 use super::chi_square::exceeded;
 use super::drift::{Drift, Trend, slow_curves};
@@ -29,21 +29,21 @@ const SMALLEST: f64 = 1e-14;
 /// The weights of the differences of a window.
 #[derive(Clone, Debug)]
 pub(super) struct Weights {
-    /// The unit of weighted differences: of an error of this size of one reading among independent ones nothing changes.
+    /// The unit of weighted differences: of an error of this size of one measurement among independent ones nothing changes.
     unit: f64,
     /// `C = L L^T`.
     factor: Whitening,
-    /// What is added to the variance of each reading's own error, for `C` to have a factor in doubles.
+    /// What is added to the variance of each measurement's own error, for `C` to have a factor in doubles.
     least: f64,
-    /// What is added to differences that are taken with the columns as they are believed to be, for them to be those of the
-    /// columns as they are read.
+    /// What is added to differences taken with the columns as they are believed to be, to make them those of the
+    /// columns as measured.
     pub offset: DVector<f64>,
     sensitivity: Sensitivity,
     /// The errors of each column of the sensitivities; neighbours that rounding has made equal have one error.
     columns: ColumnErrors,
     /// The errors of the outputs.
     outputs: Vec<MeasurementErrors>,
-    /// The places of differences of which nothing was measured, in their order: such a one has no end of an error.
+    /// The places of differences that were not measured, in their order: the variance of their error is infinite.
     unmeasured: Vec<usize>,
 }
 
@@ -66,7 +66,7 @@ pub(super) fn are_needed(task: &Task<'_>) -> bool {
 
 impl Weights {
     /// Of a window, from the state at the first of its times and the columns as they are believed to be; `taken_off` is what was taken
-    /// off the readings for that. Of differences at the places `unmeasured`, which increase, nothing is known.
+    /// off the measurements for that. Of differences at the places `unmeasured`, which increase, nothing is known.
     ///
     /// # Errors
     /// Where the model cannot be followed.
@@ -161,7 +161,7 @@ impl Weights {
         likely
     }
 
-    /// The readings without such errors.
+    /// The measurements without such errors.
     pub fn without(&self, read: &Signals, errors: &DVector<f64>) -> Signals {
         let Sensitivity { columns, first, rows, .. } = &self.sensitivity;
         let mut signals = read.clone();
@@ -174,11 +174,11 @@ impl Weights {
     /// Whether the weighted differences at the best state, with their weighted derivatives, are explained; `computed` is what the
     /// computation may add to a difference, `degrees` the number of differences less that of unknowns.
     ///
-    /// What rounding and computation add may hang together in the worst way: that much is taken off before normal errors have to explain
+    /// What rounding and computation add may be correlated in the worst way: that much is taken off before normal errors have to explain
     /// the rest, as where the errors are white. Differences are weighted anew for it, with the computation's part as an
     /// error of each: weights that know of none would make much of it.
     ///
-    /// A robust loss leaves out what no normal error reaches; more of it than a tenth is no fit.
+    /// A robust loss leaves out what no normal error reaches; where that is more than a tenth nothing fits.
     pub fn fit(
         &self,
         left: &DVector<f64>,
@@ -198,13 +198,13 @@ impl Weights {
             rest => exceeded(rest * rest, degrees as f64),
         };
         let probability = least_of([Some(large), drift.map(|own| own.probability)]);
-        let (sigma, from, readings) = (self.unit, NoiseFrom::Stated, left.len() - self.unmeasured.len());
+        let (sigma, from, measurements) = (self.unit, NoiseFrom::Stated, left.len() - self.unmeasured.len());
         let fit = Fit {
             chi_square,
             degrees,
             probability,
             outliers: out,
-            readings,
+            measurements,
             squares: Some(large),
             neighbours: None,
             drift,
@@ -264,7 +264,7 @@ impl Weights {
     }
 }
 
-/// The variance of a reading's own error, by its place among the differences.
+/// The variance of a measurement's own error, by its place among the differences.
 fn own_variance(outputs: &[MeasurementErrors], place: usize) -> f64 {
     outputs[place % outputs.len()].variance().max(LEAST * LEAST)
 }

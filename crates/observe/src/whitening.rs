@@ -7,7 +7,7 @@
 //! samples. The filter keeps a root of its covariance (J. E. Potter, in G. J. Bierman, Factorization Methods for Discrete Sequential
 //! Estimation, 1977, section II.8).
 //!
-//! Neighbours that rounding has made equal have one error: the last one of each column is kept in the state until the reading changes.
+//! Neighbours that rounding has made equal have one error: the last one of each column is kept in the state until the measurement changes.
 
 use super::fit::MeasurementErrors;
 use super::sensitivity::Sensitivity;
@@ -19,12 +19,12 @@ use std::ops::Range;
 pub(super) struct ColumnErrors {
     /// Of each column.
     pub errors: Vec<MeasurementErrors>,
-    /// For each column the rows that are one reading.
+    /// For each column the rows that are one measurement.
     pub runs: Vec<Vec<Range<usize>>>,
 }
 
 impl ColumnErrors {
-    /// The deviation of what rounding does to a reading.
+    /// The deviation of what rounding does to a measurement.
     fn rounding(&self, column: usize) -> f64 {
         self.errors[column].rounding / 12f64.sqrt()
     }
@@ -34,7 +34,7 @@ impl ColumnErrors {
         self.runs[column].partition_point(|run| run.end <= row)
     }
 
-    /// Whether a row is the same reading as the one before.
+    /// Whether a row is the same measurement as the one before.
     fn goes_on(&self, column: usize, row: usize) -> bool {
         self.runs[column].get(self.run(column, row)).is_some_and(|run| run.start < row)
     }
@@ -78,7 +78,7 @@ impl Recursion<'_> {
         self.sensitivity.samples.first().map_or(0, |seen| seen.by_states.nrows())
     }
 
-    /// What a difference sees of the state.
+    /// The derivative of a difference by the state.
     fn seen(&self, sample: usize, output: usize) -> DVector<f64> {
         let seen = &self.sensitivity.samples[sample];
         let mut row = DVector::zeros(self.size());

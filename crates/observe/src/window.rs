@@ -19,15 +19,15 @@ pub struct Window<'a> {
     pub times: &'a [f64],
     /// What was measured: the values of the model's outputs, a row a sample; NaN where an output was not measured.
     pub measured: Vec<Vec<f64>>,
-    /// The state at the first time; what is not unknown of it stays.
+    /// The state at the first time; its known part stays.
     pub start: Vec<f64>,
-    /// The places of what is unknown.
+    /// The places of the unknowns.
     pub free: Vec<usize>,
-    /// What is known of the state before the readings, which is then in the place of the first of them.
+    /// What is known of the state before the measurements, which is then in the place of the first of them.
     pub(super) arrival: Option<Arc<Arrival>>,
-    /// How residuals are weighed, and the standard deviation of a reading for it.
+    /// How residuals are weighed, and the standard deviation of a measurement for it.
     pub(super) loss: (Loss, f64),
-    /// Between what the unknowns lie.
+    /// The bounds of the unknowns.
     pub(super) bounds: Vec<[f64; 2]>,
     /// The weights of the differences, where their errors are not independent and alike.
     pub(super) weights: Option<Arc<Weights>>,
@@ -110,7 +110,7 @@ impl Window<'_> {
         self.measured.first().map_or(0, Vec::len)
     }
 
-    /// How many differences stand before those of readings.
+    /// How many differences stand before those of measurements.
     pub(super) fn relations(&self) -> usize {
         self.arrival.as_ref().map_or(0, |arrival| arrival.factor.nrows())
     }
@@ -142,7 +142,7 @@ impl Window<'_> {
         differences
     }
 
-    /// The places of differences of which nothing was measured.
+    /// The places of differences that were not measured.
     pub(super) fn unmeasured(&self) -> impl Iterator<Item = usize> + '_ {
         let read = self.measured.iter().flatten().enumerate();
         read.filter(|(_, value)| value.is_nan()).map(|(place, _)| place)

@@ -2,7 +2,7 @@
 //!
 //! [`reduce`] puts conditions into a system, and leaves out what they make superfluous: states that the conditions give, constants that are known, states on
 //! which no output depends, signals that nothing needs, and of each conservation law one state. What comes out is the text of a proof file that imports the
-//! larger one, and claims all that makes the two equal under the conditions. Nothing here decides these claims: who reads the text proves them as any others.
+//! larger one, and claims all that makes the two equal under the conditions. Nothing here decides these claims: they are proved like those of any other file.
 //!
 //! Where every field keeps the conditions, the states that meet them are a system of their own, and the smaller one is that system: its ranks are those of the larger
 //! one for someone who knows that the conditions hold. A known constant is a parameter, whose differential no rank counts. What was left out because no output

@@ -8,7 +8,7 @@ pub struct ReduceQuestion {
     /// Conditions in the language of proof files: `omega1 = 0`, `omega2 = omega1`. Each has to be solved for a state, a parameter or a signal in one way, and
     /// has to stay met along every field that is kept.
     pub conditions: Vec<String>,
-    /// States and unknown constants that somebody knows, with their values where these are numbers. A constant becomes a parameter of that value; a state that moves
+    /// States and unknown constants that are known, with their values where these are numbers. A constant becomes a parameter of that value; a state that moves
     /// becomes an output; a parameter gets the value.
     pub known: Vec<(String, Option<RBig>)>,
     /// Input fields that nothing drives.
@@ -32,7 +32,7 @@ pub enum NotReduced {
     /// Conditions that can be met in several ways.
     #[error("the conditions can be met in {ways} ways: {list}; write the one that is meant")]
     SeveralWays { ways: usize, list: String },
-    /// A condition that motion leaves, or may leave.
+    /// A condition that does not stay met along a field, or is not shown to.
     #[error(
         "'{condition}' is not shown to stay met: along {field} the rate of one side less the other is {rate}"
     )]
@@ -49,7 +49,7 @@ pub enum NotReduced {
     /// A name that is no parameter and no known signal.
     #[error("'{name}' is no parameter and no known signal of the system")]
     NoSignal { name: String },
-    /// A formula that nobody would read.
+    /// A formula that is too long to read.
     #[error("the rate of '{name}' is too long to be written")]
     TooLong { name: String },
     /// Nothing is left.

@@ -18,7 +18,7 @@ use std::collections::{HashMap, HashSet};
 pub enum WhyLeftOut {
     /// The conditions give its value: the value.
     Fixed(String),
-    /// It is constant and somebody knows it: a parameter of the smaller system.
+    /// It is constant and known: a parameter of the smaller system.
     KnownConstant,
     /// It is constant and an output: a parameter of the smaller system.
     MeasuredConstant,
@@ -166,10 +166,10 @@ impl Remaining {
             .all(|rates| self.system.graph.constant_value(rates[place]).is_some_and(|rate| rate.is_zero()))
     }
 
-    /// Puts the conditions in, and sees that every field keeps them.
+    /// Puts the conditions in, and checks that every field keeps them.
     ///
     /// # Errors
-    /// A condition that cannot be solved, that motion leaves, or under which something is divided by zero.
+    /// A condition that cannot be solved, that a field does not keep, or under which something is divided by zero.
     pub fn put_in_conditions(&mut self, question: &ReduceQuestion) -> Result<(), NotReduced> {
         if question.conditions.is_empty() {
             return Ok(());
@@ -231,7 +231,7 @@ impl Remaining {
         Ok(())
     }
 
-    /// That rates and outputs have values where the conditions hold.
+    /// Checks that rates and outputs have values where the conditions hold.
     fn has_values(&mut self) -> Result<(), NotReduced> {
         let values = self.values.clone();
         for (flow, rates) in self.flows.iter().zip(&self.rates) {
@@ -250,7 +250,7 @@ impl Remaining {
         Ok(())
     }
 
-    /// That no field leads out of the conditions. Of a signal nothing has to be shown: that it has a value is what is said.
+    /// Checks that every field keeps the conditions. For a signal nothing has to be shown: its value is what the condition says.
     fn stays_met(&mut self, signals: &[Symbol]) -> Result<(), NotReduced> {
         let mut rng = ChaCha8Rng::seed_from_u64(0x006b_6570_7400); // any fixed seed: the claims of the file are proved anew
         let mut solved: Vec<(Symbol, NodeId)> =
@@ -336,7 +336,7 @@ impl Remaining {
         for place in (0..self.states.len()).rev() {
             let symbol = self.states[place];
             if self.is_constant(place) && self.system.known.contains(&symbol) {
-                // known at the beginning, and for good
+                // its initial condition is known, and so is its value at all times
                 self.constants.push((symbol, None));
                 self.leave_out(place, WhyLeftOut::KnownConstant);
             } else if self.is_measured(symbol) && self.is_constant(place) {
@@ -344,7 +344,7 @@ impl Remaining {
                 self.leave_out(place, WhyLeftOut::MeasuredConstant);
             }
         }
-        // an output that depends on nothing unknown tells nothing
+        // an output that depends on nothing unknown is uninformative
         let unknown: HashSet<Symbol> = self.unknown_symbols();
         for output in &mut self.outputs {
             let mut depends = self.system.graph.symbols_of([output.node]).into_iter();
@@ -362,7 +362,7 @@ impl Remaining {
     /// What is not known: states, unknown constants, unknown signals.
     fn unknown_symbols(&self) -> HashSet<Symbol> {
         let signals = self.system.signal_chains().into_iter().flatten();
-        // a state that is known at the beginning moves as others do
+        // a state whose initial condition is known moves as others do
         let unknown = signals.filter(|symbol| !self.system.known.contains(symbol));
         self.states.iter().copied().chain(unknown).collect()
     }
@@ -403,7 +403,7 @@ impl Remaining {
     /// Takes the last state of each conservation law that is no output by the others, and the conserved amount as an unknown constant in its place.
     pub fn use_conservation_laws(&mut self) {
         if self.states.iter().any(|state| self.system.known.contains(state)) {
-            return; // of an amount that is partly known at the beginning something is known
+            return; // of an amount whose initial value is partly known something is known
         }
         let (mut places, rest): (Vec<usize>, Vec<usize>) = (0..self.states.len())
             .filter(|place| !self.is_constant(*place))

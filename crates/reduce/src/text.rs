@@ -261,7 +261,7 @@ fn outputs(out: &mut String, remaining: &mut Remaining, names: &Names) -> Result
     Ok(())
 }
 
-/// The ranges of what is left, and what samples avoid.
+/// The ranges of what remains, and what samples avoid.
 fn sample(out: &mut String, remaining: &mut Remaining, names: &Names) {
     let mentioned = mentioned(remaining);
     let mut lines = Vec::new();

@@ -108,7 +108,7 @@ fn signals_parameters_angles_and_units_are_declared_again() {
     assert!(!found.text.contains("F(t)") && !found.text.contains("param g"), "{}", found.text);
 }
 
-/// Conditions that motion leaves, that are met in two ways, or under which nothing has a value.
+/// Conditions that a field does not keep, that are met in two ways, or under which nothing has a value.
 #[test]
 fn conditions_have_to_stay_met() {
     let text = r#"
@@ -141,7 +141,7 @@ fn conditions_have_to_stay_met() {
     assert!(matches!(why(&[], &["b"]), NotReduced::NoInput { .. }));
     let (found, _) = least(text, &question(&["v = 0"], &[], &["a"])).unwrap();
     assert_eq!((names(&found), found.unknowns), (vec![("v", "fixed")], [3, 2]));
-    // at rest nothing is left that an output could tell
+    // at rest no unknown is left on which an output depends
     assert_eq!(why(&["omega = 0", "v = -k*sin(phi)"], &["a"]), NotReduced::Nothing);
 }
 
@@ -168,7 +168,7 @@ fn two_of_a_kind_are_one() {
     );
 }
 
-/// What is known and moves becomes an output, and its rate tells what it told before.
+/// What is known and moves becomes an output, and its rate is as informative as before.
 #[test]
 fn what_moves_and_is_known_is_an_output() {
     let text = "system \"a\" state x, y drift f x' = y y' = -y output x";
@@ -177,7 +177,7 @@ fn what_moves_and_is_known_is_an_output() {
     assert!(found.remarks[0].contains("output"), "{:?}", found.remarks);
     let why = least(text, &question(&[], &["z"], &[])).unwrap_err();
     assert!(matches!(why, NotReduced::NoUnknown { .. }));
-    // a parameter that nothing tells
+    // a parameter on which no output depends
     let text = "system \"a\" state x param k unknown drift f x' = 0 output x";
     assert_eq!(least(text, &question(&[], &["k"], &[])).unwrap_err(), NotReduced::Nothing);
     for (text, word) in [
@@ -190,7 +190,7 @@ fn what_moves_and_is_known_is_an_output() {
     }
 }
 
-/// A state that is known at the beginning is no unknown, and stays one that moves.
+/// A state with a known initial condition is no unknown, and stays one that moves.
 #[test]
 fn known_initial_conditions_are_declared_again() {
     let text = "system \"a\" state x, y, z param k unknown initial x, z known drift f x' = k*x y' = x z' = 0 output x + y + z";

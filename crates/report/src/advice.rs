@@ -26,7 +26,7 @@ fn prescribed(courses: &[Course; 2]) -> String {
     format!("prescribed = [\n{}{}]", course(&courses[0]), course(&courses[1]))
 }
 
-/// What is advised, in words.
+/// What is advised, as text.
 pub fn advice_text(scene: &Scene, advice: &Advice) -> String {
     let mut lines = vec![scene.title.clone()];
     lines.push(format!(
@@ -72,7 +72,10 @@ fn expected_lines(scene: &Scene, expected: &ExpectedBounds) -> Vec<String> {
         false => "for each nanometre of noise, as the scene states none",
     };
     vec![
-        format!("in {} of {} windows all that is estimated is observable", expected.seen, expected.windows),
+        format!(
+            "in {} of {} windows all that is estimated is observable",
+            expected.observable_windows, expected.windows
+        ),
         format!("expected errors in the median window, {noise}: {}", bounds.join(", ")),
         format!("condition of the median window: {:.1e}", expected.condition),
     ]
@@ -107,7 +110,7 @@ pub fn advice_json(scene: &Scene, advice: &Advice, interrupted: bool) -> Value {
             expected.bounds.iter().map(|(name, bound)| (name.clone(), number(*bound))).collect();
         json!({
             "windows": expected.windows,
-            "observable": expected.seen,
+            "observable": expected.observable_windows,
             "bounds": bounds,
             "condition": number(expected.condition),
         })

@@ -3,8 +3,8 @@
 use palmistry_lang::System;
 use palmistry_math::expression::notation::in_letters;
 
-/// The unit of a symbol from the dimension that its file declares, or that follows from what it declares; none where nothing is
-/// known and where there is none.
+/// The unit of a symbol from the dimension that its file declares, or that follows from what it declares; none where it is
+/// unknown or there is none.
 pub fn unit_of(system: &System, name: &str) -> Option<String> {
     let symbol = system.find_symbol(name)?;
     let unit = system.dimension_of(symbol)?.unit();
@@ -24,7 +24,7 @@ pub(super) fn axis(name: &str, unit: Option<&str>) -> String {
 pub(super) fn number(value: f64, span: f64) -> String {
     let value = if value.abs() < 1e-9 * span { 0.0 } else { value };
     if !(1e-2..1e5).contains(&span) {
-        // as many digits as tell a tenth of the span from nothing
+        // as many digits as distinguish a tenth of the span from nothing
         let digits = ((value.abs() / span).log10().ceil() + 1.0).clamp(1.0, 12.0) as usize;
         return if value == 0.0 { "0".to_owned() } else { format!("{value:.digits$e}") };
     }
@@ -34,7 +34,7 @@ pub(super) fn number(value: f64, span: f64) -> String {
 
 /// The decimal logarithm of a value along an axis of some span of logarithms, as the value.
 pub(super) fn power(logarithm: f64, span: f64) -> String {
-    // as many digits as tell two of ten steps apart: a step is a part of 10^step - 1
+    // as many digits as distinguish two of ten steps: a step is a part of 10^step - 1
     let digits = (-(std::f64::consts::LN_10 * span / 10.0).log10()).ceil().clamp(0.0, 12.0) as usize;
     format!("{:.digits$e}", 10f64.powf(logarithm))
 }

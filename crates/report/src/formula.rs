@@ -18,7 +18,7 @@ fn statement_formula(text: &str, looks: &Looks) -> Option<Formula> {
         Formula::Row(parts) => parts,
         other => vec![other],
     };
-    let mut row = match statement.is_about_what_is_seen() {
+    let mut row = match statement.is_about_observability() {
         true => vec![layout.expression(&statement.equation.left)],
         false => relations(statement.relations().collect()),
     };
@@ -55,7 +55,7 @@ fn definition_formula(name: &str, text: &str, looks: &Looks) -> Option<Formula> 
     statement_formula(&format!("{name} = {text}"), looks)
 }
 
-/// A statement in LaTeX; none where the text is no statement, as that of a definition in words.
+/// A statement in LaTeX; none where the text is no statement, as a definition in prose is.
 ///
 /// ```
 /// use palmistry_report::statement_latex;

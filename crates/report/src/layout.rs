@@ -1,4 +1,4 @@
-//! How text is laid out for the place where it is read: colours, and lines broken at a width.
+//! How text is laid out for where it is shown: colours, and lines broken at a width.
 
 use anstyle::{AnsiColor, Style};
 use textwrap::{Options, WordSeparator, WordSplitter};
@@ -26,7 +26,7 @@ pub enum Tone {
     Quiet,
 }
 
-/// The place where a text is read. By default a file: no colours, and no line is broken.
+/// The place where a text is shown. By default a file: no colours, and no line is broken.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Layout {
     /// How many columns a line may have, if that is bounded.
@@ -35,7 +35,7 @@ pub struct Layout {
     pub colour: Colour,
 }
 
-/// Lines are never made shorter than this: on a narrower terminal words would stand one below the other.
+/// Lines are never made shorter than this: on a narrower terminal each word would have a line of its own.
 const NARROWEST: usize = 40;
 
 impl Layout {
@@ -67,7 +67,7 @@ impl Layout {
     }
 }
 
-/// Columns of an answer that is read and not searched.
+/// Columns of an answer that is for people and not searched.
 const COLUMNS: usize = 80;
 
 /// Adds a sentence, broken at 80 columns.
@@ -114,7 +114,7 @@ mod tests {
         let layout = Layout { width: Some(40), colour: Colour::Ansi };
         let painted = layout.paint(Tone::Bad, "alpha");
         assert_eq!(painted, "\u{1b}[1m\u{1b}[31malpha\u{1b}[0m");
-        // 39 columns that are seen fit into 40, and one more word does not
+        // 39 columns that are visible fit into 40, and one more word does not
         let line = layout.wrap("", 0, &format!("{painted} beta gamma delta epsilon zeta eta theta"));
         assert_eq!(
             line.lines().next(),

@@ -8,7 +8,8 @@ use palmistry_reduce::{LeastModel, LeftOutState, WhyLeftOut};
 use palmistry_scenes::{PlanRank, Scene, ScenePlan};
 use serde_json::{Value, json};
 
-/// A least model in words: what it has and what was left out, its generic rank (none of a system whose outputs tie signals, which `rank` decides), and whether its claims are proved.
+/// A least model as text: what it has and what was left out, its generic rank (none of a system whose outputs tie signals, which `rank` decides), and whether
+/// its claims are proved.
 pub fn least_text(least: &LeastModel, outcomes: &[Outcome], rank: Option<&GenericAnswer>) -> String {
     let mut out = String::new();
     model_lines(least, &mut out);
@@ -112,7 +113,7 @@ fn model_json(least: &LeastModel, outcomes: &[Outcome]) -> Value {
     })
 }
 
-/// What a scene requires, in words; `outcomes` are the claims of its least model's file.
+/// What a scene requires, as text; `outcomes` are the claims of its least model's file.
 pub fn plan_text(scene: &Scene, plan: &ScenePlan, outcomes: &[Outcome]) -> String {
     let mut out = String::new();
     prose(&shown(&scene.title), &mut out);
@@ -202,7 +203,7 @@ fn rank_lines(plan: &ScenePlan, out: &mut String) {
     };
     match along.rank == along.of {
         true => text += &format!("; worst condition {:.1e}, at {:.3} s", along.condition, along.at),
-        // what more derivatives tell is not asked
+        // whether higher derivatives raise the rank is not asked
         false => text += &format!("; least at {:.3} s, and more derivatives may show more", along.at),
     }
     prose(&text, out);

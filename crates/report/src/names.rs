@@ -1,16 +1,16 @@
-//! Fields with their roles and symbols with their values, as JSON and in words.
+//! Fields with their roles and symbols with their values, as JSON and as text.
 
 use dashu::rational::RBig;
 use palmistry_lang::{FieldRole, Range};
 use palmistry_math::number::{parse_decimal, round_to_decimal};
 use serde_json::{Value, json};
 
-/// The fields of which words are made, each with its role.
+/// The fields of which Lie derivatives are made, each with its role.
 pub(crate) fn fields_json(fields: &[FieldRole]) -> Value {
     fields.iter().map(|field| json!({ "name": field.name, "role": field.role.name() })).collect()
 }
 
-/// The same in words: `drift f, input g1`.
+/// The same as text: `drift f, input g1`.
 pub(crate) fn fields_text(fields: &[FieldRole]) -> String {
     let each: Vec<String> =
         fields.iter().map(|field| format!("{} {}", field.role.name(), field.name)).collect();
@@ -23,7 +23,7 @@ pub(crate) fn values_json(values: &[(String, RBig)]) -> Value {
     each.collect::<serde_json::Map<_, _>>().into()
 }
 
-/// The same in words: `g = -9.81, m = 1`.
+/// The same as text: `g = -9.81, m = 1`.
 pub(crate) fn values_text(values: &[(String, RBig)]) -> String {
     let each: Vec<String> =
         values.iter().map(|(name, value)| format!("{name} = {}", plain_number(value))).collect();

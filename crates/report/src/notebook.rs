@@ -68,7 +68,7 @@ fn behind(verdict: &Verdict) -> Markup {
     }
 }
 
-/// What is seen, unknown by unknown, and the ranks at the states that were looked at.
+/// What is observable, unknown by unknown, and the ranks at the states that were examined.
 pub fn rank_html(answer: &RankAnswer) -> String {
     html! {
         p { b { (answer.title) } }

@@ -1,11 +1,11 @@
-//! What all objects that are told as JSON have in common: their version, and errors with their place.
+//! What all JSON objects have in common: their version, and errors with their place.
 
 use palmistry_lang::ReadError;
 use palmistry_prove::claim::Outcome;
 use serde_json::{Value, json};
 
 /// The version of all objects that are printed and written as JSON: another one where a field goes, or means something else. A
-/// field that is added is no other version. `book/src/json.md` tells the fields.
+/// field that is added is no other version. `book/src/json.md` lists the fields.
 const JSON_VERSION: u32 = 3;
 
 /// An object with its version.

@@ -22,7 +22,7 @@ const SCALE: [(u8, u8, u8); 8] = [
 const POLE: RGBColor = RGBColor(250, 250, 250);
 /// Where a standard deviation is infinite: no colour of the scale, and no pole.
 const INFINITE: RGBColor = RGBColor(0, 150, 136);
-/// What is said of it: doubles cannot tell more.
+/// What is said of it: doubles cannot decide more.
 const INFINITE_TEXT: &str = "infinite: unobservable, or not distinguishable from it";
 /// So many decades above the smallest value have colours of their own.
 const DECADES: f64 = 6.0;
@@ -280,7 +280,7 @@ pub(crate) fn slope(slope: &Slope, title: &str, unit: Option<&str>) -> String {
     })
 }
 
-/// Colours of all unknowns under the worst, that are seen on light and dark pages.
+/// Colours of all unknowns under the worst, visible on light and dark pages.
 const LINES: [RGBColor; 4] =
     [RGBColor(112, 90, 200), RGBColor(0, 135, 190), RGBColor(0, 150, 110), RGBColor(150, 130, 60)];
 
@@ -424,7 +424,7 @@ mod tests {
     use palmistry_lang::CoordinateRange;
     use palmistry_workbench::tradeoff::PictureScales;
 
-    /// Neighbours are one stripe where nothing between them differs: a dip that no stripe shows keeps them apart.
+    /// Neighbours are one stripe where nothing between them differs: a dip that no stripe shows separates them.
     #[test]
     fn a_stripe_says_what_holds_all_over_it() {
         let stripes = |dip: Option<usize>| {
@@ -444,7 +444,7 @@ mod tests {
         assert!(columns(&nothing, |_| 0, [0, 9]).is_empty());
     }
 
-    /// What differs by rounding alone is one value, said once; what differs by little has a scale that tells.
+    /// What differs by rounding alone is one value, said once; what differs by little has a scale that shows it.
     #[test]
     fn a_constant_map_says_its_value() {
         let axis = |name: &str| CoordinateRange { name: name.to_owned(), low: -10_000.0, high: 10_000.0 };

@@ -4,10 +4,10 @@ use palmistry_checker::{CheckedVerdict, Evidence, Finding, VerdictFile};
 use palmistry_io::foreign::shown;
 use serde_json::{Value, json};
 
-/// The words of findings, from the best to the worst.
+/// The names of findings, from the best to the worst.
 const WORDS: [&str; 5] = ["confirmed", "half confirmed", "consistent", "not checked", FAILED];
 
-/// The word for what the checker contradicts.
+/// The name of what the checker contradicts.
 const FAILED: &str = "NOT CONFIRMED";
 
 fn count(checked: &[CheckedVerdict<'_>], word: &str) -> usize {

@@ -1,4 +1,4 @@
-//! What slow palms tell of a body: text, JSON, and a page with the pictures of figures 3.6, 3.7 and 3.8 and the body in motion.
+//! What slow palms determine of a body: text, JSON, and a page with the pictures of figures 3.6, 3.7 and 3.8 and the body in motion.
 
 use crate::document::document;
 use crate::slow_observed::SlowObserved;
@@ -71,7 +71,7 @@ fn ways<'a>(observed: &SlowObserved<'a>) -> Vec<Way<'a>> {
             Some(why) => format!(
                 "stopped at sample {} of {}: {why}",
                 found.track.radii.len(),
-                observed.experiment.readings.rows()
+                observed.experiment.measurements.rows()
             ),
             None => format!(
                 "the denominator of 3.37 changes its sign {} times; e_f up to {:.1e} m, e_c up to {:.1e} m",
@@ -112,7 +112,7 @@ fn mean_radius(observed: &SlowObserved<'_>) -> f64 {
 pub fn slow_text(observed: &SlowObserved<'_>) -> String {
     let (experiment, answers) = (observed.experiment, observed.answers);
     let mut out = format!("{}\n", experiment.scene.title);
-    let _ = writeln!(out, "{} samples", experiment.readings.rows());
+    let _ = writeln!(out, "{} samples", experiment.measurements.rows());
     if let Some(truth) = &experiment.truth {
         let _ =
             writeln!(out, "the motion: {}; jumps: {}", truth.trajectory.ended, truth.trajectory.jumps.len());
@@ -224,7 +224,7 @@ pub fn slow_json(observed: &SlowObserved<'_>) -> Value {
         "scene": experiment.scene.title,
         "motion": "quasistatic",
         "seed": experiment.scene.seed,
-        "samples": experiment.readings.rows(),
+        "samples": experiment.measurements.rows(),
         "simulation": simulation,
         "shape": together,
         "ways": ways.collect::<Vec<_>>(),
@@ -258,7 +258,7 @@ pub fn slow_page(observed: &SlowObserved<'_>) -> String {
         header {
             h1 { (experiment.scene.title) }
             p {
-                "A smooth convex body at rest between two slow palms (chapter 3); " b { (experiment.readings.rows()) " samples" } ". "
+                "A smooth convex body at rest between two slow palms (chapter 3); " b { (experiment.measurements.rows()) " samples" } ". "
                 @if let Some(truth) = &experiment.truth {
                     "Simulated: the motion " (truth.trajectory.ended) ", with " (truth.trajectory.jumps.len()) " jumps. "
                 } @else { "Recorded: what is true is not known. " }

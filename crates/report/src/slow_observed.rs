@@ -4,7 +4,7 @@ use palmistry_scenes::slow::{SlowAnswers, SlowExperiment, StudyRow};
 
 /// A scene of slow motion and what came of it.
 pub struct SlowObserved<'a> {
-    /// The scene with its readings.
+    /// The scene with its measurements.
     pub experiment: &'a SlowExperiment,
     /// What was found.
     pub answers: &'a SlowAnswers,

@@ -19,8 +19,8 @@ fn shown<'a>(observed: &SlowObserved<'a>) -> Option<&'a SlowTrack> {
 }
 
 fn pose(observed: &SlowObserved<'_>, row: usize) -> Option<MovedPose> {
-    let readings = &observed.experiment.readings;
-    let (palms, contacts) = (readings.palms[row], readings.contacts[row]);
+    let measurements = &observed.experiment.measurements;
+    let (palms, contacts) = (measurements.palms[row], measurements.contacts[row]);
     if let Some(truth) = &observed.experiment.truth {
         let at = truth.trajectory.moments.get(row)?;
         return Some(MovedPose { phi0: at.phi0, centre: at.centre, palms, contacts });
@@ -50,14 +50,14 @@ fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
 
 /// The body and its palms in motion.
 pub(super) fn animation(observed: &SlowObserved<'_>) -> String {
-    let rows = rows(observed.experiment.readings.rows(), MOVED);
+    let rows = rows(observed.experiment.measurements.rows(), MOVED);
     let poses: Vec<MovedPose> = rows.iter().filter_map(|row| pose(observed, *row)).collect();
     moved_body(&outline(observed), &poses)
 }
 
 /// Figure 3.6: at so many samples the points that were touched so far, as they were found; those of so many samples at most.
 pub(super) fn frames(observed: &SlowObserved<'_>, most: usize, dots_of: usize) -> String {
-    let (Some(found), readings) = (&observed.answers.together, &observed.experiment.readings) else {
+    let (Some(found), measurements) = (&observed.answers.together, &observed.experiment.measurements) else {
         return "<p>Nothing was found.</p>".to_owned();
     };
     let support = &found.shape.support;
@@ -67,19 +67,19 @@ pub(super) fn frames(observed: &SlowObserved<'_>, most: usize, dots_of: usize) -
         .fold(0.0, f64::max);
     let scale = 42.0 / size;
     let mut out = String::new();
-    let count = readings.rows();
+    let count = measurements.rows();
     for frame in rows(count, most + 1).into_iter().skip(1) {
         let phi0 = found.track.phi0[frame];
         let mut dots = String::new();
         for row in (0..=frame).step_by((count / dots_of).max(1)) {
-            let palms = readings.palms[row];
+            let palms = measurements.palms[row];
             let normals = [palms[0] - FRAC_PI_2, palms[0] + palms[1] - 3.0 * FRAC_PI_2];
             for normal in normals {
                 let [x, y] = turned(support.point(normal - found.track.phi0[row]), phi0);
                 let _ = write!(dots, "M{:.1},{:.1}h.1", x * scale, -y * scale);
             }
         }
-        let palms = readings.palms[frame];
+        let palms = measurements.palms[frame];
         let lines = [palms[0] - FRAC_PI_2, palms[0] + palms[1] - 3.0 * FRAC_PI_2].map(|normal| {
             let [x, y] = turned(support.point(normal - phi0), phi0);
             let along = [-normal.sin() * 30.0, normal.cos() * 30.0];
@@ -146,7 +146,7 @@ pub(super) fn logarithmic(title: &str, unit: &str, series: &[(&str, &str, Vec<f6
     out
 }
 
-/// Figures 3.7 and 3.8: errors of the radii and the orientation, and the errors that can be seen without the truth.
+/// Figures 3.7 and 3.8: errors of the radii and the orientation, and the errors that are known without the truth.
 pub(super) fn curves(observed: &SlowObserved<'_>) -> String {
     off_truth(observed, usize::MAX) + &seen_errors(observed)
 }
@@ -189,7 +189,7 @@ pub(super) fn off_truth(observed: &SlowObserved<'_>, most: usize) -> String {
     out
 }
 
-/// The errors of the thesis, which see no truth.
+/// The errors of the thesis, which need no truth.
 fn seen_errors(observed: &SlowObserved<'_>) -> String {
     let answers = observed.answers;
     let thesis = answers.thesis.first().map(|(_, found)| found);

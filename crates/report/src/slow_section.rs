@@ -31,7 +31,7 @@ fn one(observed: &SlowObserved<'_>) -> Markup {
     html! {
         h3 { (experiment.scene.title) }
         p {
-            b { (experiment.readings.rows()) " samples" }
+            b { (experiment.measurements.rows()) " samples" }
             @if let Some(truth) = &experiment.truth {
                 "; the motion " (truth.trajectory.ended) ", with " (truth.trajectory.jumps.len()) " jumps"
             }

@@ -21,7 +21,7 @@ fn tally(way: &WayTally) -> [String; 2] {
     })
 }
 
-/// The rows of a study by the number of jumps, in words.
+/// The rows of a study by the number of jumps, as text.
 fn jump_tallies(row: &StudyRow) -> Vec<String> {
     let one = |(jumps, at): (&usize, &JumpTally)| {
         format!(
@@ -45,7 +45,7 @@ fn row_in_words(row: &StudyRow) -> String {
     format!("{} {} samples, resolution {} m{order}", row.family.name(), row.samples, row.resolution)
 }
 
-/// Bodies that were drawn and do not count, in words.
+/// Bodies that were drawn and do not count, as text.
 fn passed_over(row: &StudyRow) -> String {
     let why = if row.jumps.is_empty() { "jumped" } else { "did not jump as often as is asked" };
     let ended = match row.asked.saturating_sub(row.bodies) {

@@ -9,7 +9,7 @@ use std::fmt::Write;
 /// What turns pictures; one on a page is enough.
 pub(super) const SCRIPT: &str = TURNING;
 
-/// From where a picture is seen at first, in rad: the azimuth, and the height above the horizon.
+/// The direction from which a picture is shown at first, in rad: the azimuth, and the height above the horizon.
 const TURN: f64 = 0.9;
 const RISE: f64 = 0.35;
 
@@ -23,7 +23,7 @@ pub struct ShownSurface<'a> {
     pub surface: &'a SurfaceMesh,
 }
 
-/// A page about surfaces: a title, rows of a table (what, and its value in words), and their picture.
+/// A page about surfaces: a title, rows of a table (what, and its value as text), and their picture.
 ///
 /// It is one file with nothing from elsewhere.
 pub fn solid_page(title: &str, rows: &[(String, String)], surfaces: &[ShownSurface]) -> String {
@@ -91,7 +91,7 @@ fn rounded(place: Vector3<f64>) -> [f64; 3] {
 }
 
 impl Part<'_> {
-    /// The paths of polygons whose back is seen, and of those whose front is.
+    /// The paths of polygons that show their back, and of those that show their front.
     fn projected(&self, turn: f64, rise: f64) -> [String; 2] {
         let ((s, c), (t, d)) = (turn.sin_cos(), rise.sin_cos());
         let seen: Vec<[f64; 2]> =
@@ -121,7 +121,7 @@ mod tests {
     use super::*;
     use palmistry_bodies::shape::sphere::{SurfaceTouch, contact_hull};
 
-    /// Of a cube three faces are seen from a corner, and three are not: each triangle of the hull is in one path.
+    /// Of a cube three faces are visible from a corner, and three are not: each triangle of the hull is in one path.
     #[test]
     fn a_cube_shows_three_of_its_faces() {
         let touches: Vec<SurfaceTouch> = (0..8)
@@ -133,7 +133,7 @@ mod tests {
         let part = Part { corners, polygons: &surface.polygons };
         let [hidden, seen] = part.projected(TURN, RISE).map(|path| path.matches('M').count());
         assert_eq!((hidden, seen), (6, 6));
-        // from straight above two triangles are seen, two are not, and the sides are lines
+        // from straight above two triangles are visible, two are not, and the sides are lines
         let [_, top] = part.projected(0.3, std::f64::consts::FRAC_PI_2);
         let above: Vec<&str> = top.split('M').skip(1).collect();
         assert!(above.len() >= 2);

@@ -1,4 +1,4 @@
-//! What three palms tell of a body in space: text and JSON.
+//! What three palms determine of a body in space: text and JSON.
 
 use palmistry_bodies::mechanics::spatial::SpatialEnded;
 use palmistry_bodies::shape::sphere::{BoundedRegion, OuterBound, TouchError};
@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 /// A scene in space and what came of it.
 pub struct SpaceObserved<'a> {
-    /// The scene with its readings.
+    /// The scene with its measurements.
     pub experiment: &'a SpaceExperiment,
     /// What was found.
     pub answers: &'a SpaceAnswers,
@@ -24,7 +24,7 @@ impl<'a> SpaceObserved<'a> {
     }
 }
 
-/// What is sought, with its unit.
+/// The unknowns, with their units.
 const NAMES: [(&str, &str); 16] = [
     ("c_x", "m"),
     ("c_y", "m"),
@@ -44,7 +44,7 @@ const NAMES: [(&str, &str); 16] = [
     ("m", "kg"),
 ];
 
-/// One number that is sought.
+/// One unknown.
 pub(super) struct Entry {
     pub name: &'static str,
     pub unit: &'static str,
@@ -151,20 +151,20 @@ pub fn space_ended(observed: &SpaceObserved<'_>) -> Option<String> {
     Some(format!("the motion ended early: {told}"))
 }
 
-/// Why a state that explains the readings is not what they tell.
+/// Why a state that explains the measurements is not determined by them.
 fn doubt(update: &SpaceUpdate) -> Option<String> {
     let state = update.state.as_ref()?;
     match (update.verdict, state.rival) {
-        (SpaceVerdict::Blind, _) if !state.is_minimum => {
+        (SpaceVerdict::Unobservable, _) if !state.is_minimum => {
             Some("no least chi-square, other states explain the measurements better and better".to_owned())
         }
-        (SpaceVerdict::Blind, _) if state.is_noise() => {
+        (SpaceVerdict::Unobservable, _) if state.is_noise() => {
             Some(format!("{:.2} of what they seem to determine is left without their noise", state.curved))
         }
-        (SpaceVerdict::Blind, _) if state.is_bent() => {
+        (SpaceVerdict::Unobservable, _) if state.is_bent() => {
             Some("chi-square is no parabola as far as the bounds reach, these say nothing".to_owned())
         }
-        (SpaceVerdict::Blind, _) => Some("a bound is as large as what is estimated".to_owned()),
+        (SpaceVerdict::Unobservable, _) => Some("a bound is as large as what is estimated".to_owned()),
         (SpaceVerdict::Ambiguous, Some(rival)) => Some(format!(
             "another state {:.0} deviations away leaves chi-square {:.1}",
             rival.apart, rival.chi_square
@@ -175,7 +175,7 @@ fn doubt(update: &SpaceUpdate) -> Option<String> {
 
 /// From when to when a window goes, and what is to be said of it.
 pub(super) fn headline(observed: &SpaceObserved<'_>, update: &SpaceUpdate) -> String {
-    let times = &observed.experiment.readings.times;
+    let times = &observed.experiment.measurements.times;
     let mut out = format!(
         "{:.4} to {:.4} s, {} samples: {}",
         times[update.rows.start],
@@ -202,7 +202,7 @@ pub(super) fn headline(observed: &SpaceObserved<'_>, update: &SpaceUpdate) -> St
 /// What was found, as text.
 pub fn space_text(observed: &SpaceObserved<'_>) -> String {
     let (experiment, answers) = (observed.experiment, observed.answers);
-    let times = &experiment.readings.times;
+    let times = &experiment.measurements.times;
     let covered = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
     let mut out =
         format!("{}\n{} samples over {covered:.4} s, nothing known\n", experiment.scene.title, times.len());
@@ -249,7 +249,7 @@ fn number(value: f64) -> Value {
 }
 
 fn update_json(observed: &SpaceObserved<'_>, update: &SpaceUpdate) -> Value {
-    let times = &observed.experiment.readings.times;
+    let times = &observed.experiment.measurements.times;
     let states: serde_json::Map<String, Value> = entries(observed, update)
         .into_iter()
         .map(|entry| {
@@ -320,7 +320,7 @@ pub fn space_json(observed: &SpaceObserved<'_>) -> Value {
         "scene": experiment.scene.title,
         "motion": "spatial",
         "seed": experiment.scene.seed,
-        "samples": experiment.readings.times.len(),
+        "samples": experiment.measurements.times.len(),
         "simulation": simulation,
         "updates": answers.updates.iter().map(|update| update_json(observed, update)).collect::<Vec<_>>(),
         "shape": shape,

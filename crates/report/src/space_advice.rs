@@ -9,7 +9,7 @@ fn laid(laying: &Laying) -> String {
     format!("orientation = {:?}\nbalanced = true\nrate = {:?}", laying.orientation, laying.rate)
 }
 
-/// What is advised, in words.
+/// What is advised, as text.
 pub fn runs_advice_text(scene: &SpaceScene, advice: &RunsAdvice) -> String {
     let mut out = scene.title.clone();
     let _ = writeln!(out, "\n{} runs tried; the body is held to the end in {}", advice.tried, advice.held);

@@ -1,4 +1,4 @@
-//! What three palms tell of a body in space: a page with a picture of the shape that can be turned, tables, and curves of errors.
+//! What three palms determine of a body in space: a page with a picture of the shape that can be turned, tables, and curves of errors.
 
 use crate::document::document;
 use crate::slow_plot::logarithmic;
@@ -20,7 +20,7 @@ fn picture(observed: &SpaceObserved<'_>) -> Markup {
     for one in &surfaces {
         let colour = match one.kind {
             SurfaceKind::Body => "#9a9a9a",
-            // beside the body itself it could not be told apart
+            // beside the body itself it could not be distinguished
             SurfaceKind::Shape if !is_known => "#9a9a9a",
             SurfaceKind::Hull => "#1f77b4",
             SurfaceKind::HalfSpaces => "#ff7f0e",
@@ -99,7 +99,7 @@ pub(super) fn space_section(all: &[SpaceObserved<'_>]) -> Markup {
             @for observed in all {
                 h3 { (observed.experiment.scene.title) }
                 p {
-                    b { (observed.experiment.readings.times.len()) " samples" } ". "
+                    b { (observed.experiment.measurements.times.len()) " samples" } ". "
                     @if let Some(ended) = space_ended(observed) { (ended) ". " }
                 }
                 (shape(observed))
@@ -118,7 +118,7 @@ pub fn space_page(observed: &SpaceObserved<'_>) -> String {
         header {
             h1 { (experiment.scene.title) }
             p {
-                "A smooth convex body in space on three palms, from their measurements with nothing known; " b { (experiment.readings.times.len()) " samples" } ". "
+                "A smooth convex body in space on three palms, from their measurements with nothing known; " b { (experiment.measurements.times.len()) " samples" } ". "
                 @if experiment.truth.is_none() { "Recorded: what is true is not known. " }
                 @if let Some(ended) = space_ended(observed) { (ended) ". " }
             }

@@ -1,4 +1,4 @@
-//! The surfaces of a body in space that was touched: what the page shows, and what other programs can read.
+//! The surfaces of a body in space that was touched: for the page, and for other programs.
 
 use super::space::SpaceObserved;
 use nalgebra::Vector3;
@@ -14,11 +14,11 @@ pub enum SurfaceKind {
     Shape,
     /// The hull of all contacts.
     Hull,
-    /// What all tangent planes leave.
+    /// The intersection of the half-spaces of all tangent planes.
     HalfSpaces,
-    /// What balls leave where the greatest radius of curvature is known.
+    /// The intersection of balls where the greatest radius of curvature is known.
     Balls,
-    /// What the balls of hollow palms leave.
+    /// The intersection of the balls of hollow palms, and of half-spaces at the other contacts.
     HollowPalms,
 }
 
@@ -73,7 +73,7 @@ fn smooth(rings: usize, point: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> Surfac
     SurfaceMesh { corners, polygons }
 }
 
-/// All that there are, smooth ones with so many rings of points. The support function says nothing where nothing was touched, and neither does its surface.
+/// All that there are, smooth ones with so many rings of points. Where the body was not touched the support function is undetermined, and so is its surface.
 pub fn space_surfaces(observed: &SpaceObserved<'_>, rings: usize) -> Vec<SpaceSurface> {
     let (experiment, Some(shape)) = (observed.experiment, &observed.answers.shape) else { return Vec::new() };
     let truth = experiment.truth.as_ref().map(|_| {

@@ -1,7 +1,7 @@
-//! The value of an expression at a point, as JSON and in words.
+//! The value of an expression at a point, as JSON and as text.
 
 use dashu::rational::RBig;
-use palmistry_math::number::Rung;
+use palmistry_math::number::NumberType;
 use palmistry_prove::claim::{PointValue, ValueAtPoint};
 use palmistry_rank::sweep::Certainty;
 use serde_json::{Value as Json, json};
@@ -9,7 +9,7 @@ use serde_json::{Value as Json, json};
 /// Longer fractions than this are not shown beside their decimals.
 const LONGEST_EXACT: usize = 60;
 
-/// What was asked of a value: the expression, to how many digits, and at what values, by name.
+/// The question for a value: the expression, to how many digits, and at what values, by name.
 #[derive(Clone, Debug)]
 pub struct ValueAsked<'a> {
     /// The expression as it was written.
@@ -27,7 +27,7 @@ pub fn value_json(asked: &ValueAsked<'_>, value: &ValueAtPoint) -> Json {
             "value": value.decimal,
             "exact": value.exact.as_ref().map(RBig::to_string),
             "verdict": if value.certainty == Certainty::Certified { "certified" } else { "computed" },
-            "numbers": value.rung.name(),
+            "numbers": value.number_type.name(),
             "width": value.width,
             "escalated": value.climbed,
         }),
@@ -71,7 +71,7 @@ pub fn how_certain(value: &ValueAtPoint, digits: usize) -> String {
 
 fn of_number(value: &PointValue, digits: usize) -> String {
     let width = value.width.as_deref().unwrap_or_default();
-    match (&value.exact, value.certainty, value.rung) {
+    match (&value.exact, value.certainty, value.number_type) {
         (Some(exact), ..) => {
             let exact = exact.to_string();
             let equal =
@@ -83,12 +83,12 @@ fn of_number(value: &PointValue, digits: usize) -> String {
                 "{digits} digits, computed: doubles and double-doubles agree on them, which proves nothing"
             )
         }
-        (None, Certainty::Certified, rung) => format!(
+        (None, Certainty::Certified, number_type) => format!(
             "{digits} digits, certain: the value is enclosed by an interval of width {width}, both ends of which round to \
              them; {}",
-            match rung {
-                Rung::Intervals => "by doubles, each operation rounded outward".to_owned(),
-                rung => format!("by {}, each operation rounded outward", rung.name()),
+            match number_type {
+                NumberType::Intervals => "by doubles, each operation rounded outward".to_owned(),
+                number_type => format!("by {}, each operation rounded outward", number_type.name()),
             }
         ),
     }
@@ -96,7 +96,7 @@ fn of_number(value: &PointValue, digits: usize) -> String {
 
 /// The same of the entries of a matrix.
 fn of_entries(values: &[PointValue], digits: usize) -> String {
-    let mut numbers: Vec<String> = values.iter().map(|value| value.rung.name()).collect();
+    let mut numbers: Vec<String> = values.iter().map(|value| value.number_type.name()).collect();
     numbers.sort();
     numbers.dedup();
     let numbers = numbers.join(", ");

@@ -1,8 +1,8 @@
 //! Advice before an experiment: how palms may move so that they touch as many normals of a body as they can, and hold it all the time.
 //!
-//! Courses are drawn at random within limits, moved by Newton's laws as any scene is, and the best are varied, less and less. Of those that touch most it is asked how well windows of
-//! their readings could tell the state, by the bound of Cramér and Rao at the truth, and the best of them is advised. Each course has a random stream of its own: the
-//! answer is that of the seed, with any number of threads. What is found is a search's best, and no proof that there is nothing better.
+//! Courses are drawn at random within limits, moved by Newton's laws as any scene is, and the best are varied, less and less. Of those that touch most, windows of their
+//! measurements are compared by the Cramér-Rao bound of the state at the truth, and the best is advised. Each course has a random stream of its own: the
+//! answer depends on the seed alone, not on the number of threads. It is the best that the search found; nothing proves that there is no better one.
 
 use super::run::Experiment;
 use super::scene::{Guess, Method, Scene, SceneError, Simulated, Study};
@@ -16,22 +16,22 @@ use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// So many courses are varied.
+/// This many courses are varied.
 const PARENTS: usize = 8;
 
-/// So many are tried before the best are chosen anew.
+/// This many are tried before the best are chosen anew.
 const BATCH: usize = 32;
 
-/// Of those that touch nearly as much as the best, so many are asked what their readings tell.
+/// Of those that touch nearly as much as the best, this many are compared by the Cramér-Rao bounds of their measurements.
 const FINALISTS: usize = 6;
 
-/// Touched as much as the best: this part of all normals less.
+/// Coverage within this fraction of all normals below the best counts as equal.
 const AS_MUCH: f64 = 0.01;
 
-/// Numbers of a course are multiples of this, in rad, Hz and s: what is printed is what was tried.
+/// Numbers of a course are multiples of this, in rad, Hz and s, so that the printed course is the one that was tried.
 const STEP: f64 = 1e-3;
 
-/// Within what palms move.
+/// Limits of the palms' motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdviceLimits {
     /// The least and the greatest angle of each palm, in rad; palm 2 is measured from palm 1.
@@ -40,21 +40,21 @@ pub struct AdviceLimits {
     pub rate: f64,
 }
 
-/// What is asked.
+/// The question: limits, number of trials, seed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdviceQuestion {
-    /// Within what palms move.
+    /// Limits of the palms' motion.
     pub limits: AdviceLimits,
     /// How many courses are tried.
     pub trials: usize,
-    /// Where random numbers begin.
+    /// The seed of the random numbers.
     pub seed: u64,
 }
 
 /// A motion that was tried.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TriedMotion {
-    /// How the palms move.
+    /// The courses of both palms.
     pub courses: [Course; 2],
     /// The part of the duration after which it ended, 1 where the body was held to the end; 0 where it could not be held at first.
     pub lasted: f64,
@@ -62,22 +62,22 @@ pub struct TriedMotion {
     pub coverage: Coverage,
 }
 
-/// What windows of the readings of a motion can tell.
+/// The expected Cramér-Rao bounds of windows of the measurements of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExpectedBounds {
     /// How many windows there are.
     pub windows: usize,
-    /// In how many of them all that is sought has a bound below `blind` of its size.
-    pub seen: usize,
-    /// The bound of each state in the median window, in its unit; infinite where more than half of the windows do not see it.
+    /// In how many of them every estimated state has a bound below `unobservable_above` of its size.
+    pub observable_windows: usize,
+    /// The Cramér-Rao bound of each state in the median window, in its unit; infinite where it is unobservable in more than half of the windows.
     pub bounds: Vec<(String, f64)>,
-    /// The largest of the bounds by the sizes of their states, in the median window.
+    /// The largest ratio of a bound to the size of its state, in the median window.
     pub relative: f64,
-    /// The condition of the sensitivities in the median window.
+    /// The condition number of the sensitivities in the median window.
     pub condition: f64,
 }
 
-/// What is advised.
+/// The advice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Advice {
     /// How many courses were tried.
@@ -88,12 +88,12 @@ pub struct Advice {
     pub own: Option<TriedMotion>,
     /// The best motion; none where the body was held in none.
     pub best: Option<TriedMotion>,
-    /// What its readings tell; none where the scene's model does not fit such a motion.
+    /// The expected bounds of its measurements; none where the scene's model does not fit such a motion.
     pub expected: Option<ExpectedBounds>,
 }
 
 impl TriedMotion {
-    /// What counts: normals touched, and less where the body is not held.
+    /// The score: normals touched, reduced where the body is not held.
     fn worth(&self) -> f64 {
         let touched = self.coverage.fraction();
         if self.is_held() { 1.0 + touched } else { touched * self.lasted }
@@ -105,7 +105,7 @@ impl TriedMotion {
     }
 }
 
-/// Seeks courses of the palms of a scene that touch all normals of its body; `done` is told of each that was tried.
+/// Seeks courses of the palms of a scene that touch all normals of its body; `done` is called after each trial.
 ///
 /// # Errors
 /// Where the scene describes no body between palms, or one that cannot be simulated, with the place in the scene.
@@ -160,7 +160,7 @@ pub fn advise(
     Ok(Advice { tried: count, held, own, best, expected })
 }
 
-/// Of those that touch as much as the best, the one whose readings tell most.
+/// Of those that touch as much as the best, the one with the smallest Cramér-Rao bounds.
 fn chosen(scene: &Scene, mut best: Vec<TriedMotion>) -> (Option<TriedMotion>, Option<ExpectedBounds>) {
     let Some(most) = best.first().map(TriedMotion::worth) else { return (None, None) };
     best.retain(|motion| motion.worth() >= most - AS_MUCH);
@@ -213,7 +213,7 @@ fn normal(scene: &Scene, moment: &Moment, palm: usize) -> f64 {
     tangent - side * FRAC_PI_2 - moment.phi0
 }
 
-/// What windows of the readings of a motion can tell, at the truth.
+/// The expected Cramér-Rao bounds of windows of the measurements of a motion, at the truth.
 fn expected(scene: &Scene, courses: &[Course; 2]) -> Option<ExpectedBounds> {
     let (scene, _) = with_courses(scene, scene.simulated.as_ref()?, courses);
     let experiment = Experiment::new(scene, None).ok()?;
@@ -231,7 +231,7 @@ fn expected(scene: &Scene, courses: &[Course; 2]) -> Option<ExpectedBounds> {
         let (bounds, condition) = observer.seen_at(&task, &truth, &rows, &[]);
         let ratios = bounds.iter().zip(&task.sizes).map(|(bound, size)| bound / size);
         let largest = ratios.fold(0.0, f64::max);
-        seen += usize::from(largest <= observer.blind);
+        seen += usize::from(largest <= observer.unobservable_above);
         relative.push(largest);
         columns.iter_mut().zip(&bounds).for_each(|(column, bound)| column.push(*bound));
         conditions.push(condition);
@@ -243,7 +243,7 @@ fn expected(scene: &Scene, courses: &[Course; 2]) -> Option<ExpectedBounds> {
     }
     let bounds = names.iter().zip(columns).map(|(name, column)| ((*name).to_owned(), median(column)));
     let (relative, condition) = (median(relative), median(conditions));
-    Some(ExpectedBounds { windows, seen, bounds: bounds.collect(), relative, condition })
+    Some(ExpectedBounds { windows, observable_windows: seen, bounds: bounds.collect(), relative, condition })
 }
 
 /// The middle one, the upper of two.

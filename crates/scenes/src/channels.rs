@@ -1,8 +1,8 @@
-//! How single columns are read: errors that simulated sensors make, what observers know of them, and what they seek.
+//! The sensors of single columns: errors that simulated sensors make, what observers know of them, and the calibrations that they estimate.
 
 use super::scene::{Channel, Scene, SceneError};
 use super::simulation::{NOMINAL, TOUCH};
-use crate::not_told::not_told;
+use crate::not_identifiable::not_identifiable;
 use palmistry_lang::System;
 use palmistry_observe::{
     CalibrationKind, EmptyCells, EstimateQuestion, Interpolation, MeasurementErrors, SignalError, Signals,
@@ -10,7 +10,7 @@ use palmistry_observe::{
 };
 use std::collections::BTreeMap;
 
-/// What is known of a column's sensor: it reads `gain * x(t - delay) + bias`.
+/// What is known of a column's sensor: it measures `gain * x(t - delay) + bias`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Known {
     pub gain: f64,
@@ -24,7 +24,7 @@ impl Default for Known {
     }
 }
 
-/// Splits what observers know into constants of the model and what is known of sensors, such as `tau1.gain`.
+/// Splits the known values into constants of the model and those of sensors, such as `tau1.gain`.
 pub(super) fn split(known: &BTreeMap<String, f64>) -> (BTreeMap<String, f64>, BTreeMap<String, Known>) {
     let mut constants = BTreeMap::new();
     let mut sensors: BTreeMap<String, Known> = BTreeMap::new();
@@ -46,7 +46,7 @@ pub(super) fn known_sensors(known: &BTreeMap<String, f64>) -> BTreeMap<String, K
     split(known).1
 }
 
-/// Whether all columns of which something is said are there.
+/// Checks the columns that the scene's sensor settings and calibrations name.
 pub(super) fn are_columns(scene: &Scene, signals: &Signals) -> Result<(), SceneError> {
     let columns = || signals.names().join(", ");
     if let Some(name) = scene.channels.keys().find(|name| signals.find(name).is_none()) {
@@ -86,7 +86,7 @@ pub(super) fn are_columns(scene: &Scene, signals: &Signals) -> Result<(), SceneE
         }
     }
     for (index, name) in scene.observer.estimate.iter().enumerate() {
-        // what was earlier is followed back, in steps that know no jumps
+        // earlier values are integrated backwards, in steps that know no jumps
         let is_delay = CalibrationKind::of(name).is_some_and(|(_, kind)| kind == CalibrationKind::Delay);
         if is_delay && scene.data.interpolation == Interpolation::Hold {
             let message = format!("'{name}' cannot be estimated where columns are held between samples");
@@ -114,7 +114,7 @@ pub(super) fn are_columns(scene: &Scene, signals: &Signals) -> Result<(), SceneE
     Ok(())
 }
 
-/// The readings without what is known of the sensors. What is late by more than others ends before them: so do the signals.
+/// The measurements corrected by the known gains, biases and delays of the sensors. They end earlier by the largest delay.
 pub(super) fn corrected(signals: Signals, known: &BTreeMap<String, f64>) -> Result<Signals, SignalError> {
     let sensors = split(known).1;
     if sensors.is_empty() {
@@ -138,7 +138,7 @@ pub(super) fn corrected(signals: Signals, known: &BTreeMap<String, f64>) -> Resu
     Ok(Signals::sparse(times.clone(), columns)?.interpolated(signals.interpolation()))
 }
 
-/// The errors of the readings of a column, as the scene states them; none where nothing is said of the column itself.
+/// The errors of the measurements of a column, as the scene states them; none where it states none for the column itself.
 fn stated(scene: &Scene, name: &str) -> Option<MeasurementErrors> {
     let touch = TOUCH.contains(&name).then_some(scene.sensor);
     let channel = scene.channels.get(name).copied();
@@ -150,10 +150,10 @@ fn stated(scene: &Scene, name: &str) -> Option<MeasurementErrors> {
     })
 }
 
-/// Hands a task what is known of the errors of single columns: in a scene that says something of one. Of those that are `sparse` errors are larger, where cells were filled.
+/// Gives a task the known errors of single columns, in a scene that states one. Of those that are `sparse` errors are larger, where cells were filled.
 ///
 /// # Errors
-/// Where a recording's columns err, and nothing is said of its outputs.
+/// Where a recording's columns have errors, and none are stated for its outputs.
 pub(super) fn tell(
     (scene, sparse): (&Scene, &[SparseColumn]),
     task: &mut Task<'_>,
@@ -183,12 +183,12 @@ pub(super) fn tell(
     let outputs: Vec<String> =
         all.filter(|(place, _)| !task.full.is_implicit(*place)).map(|(_, name)| name.clone()).collect();
     for name in task.signals.names() {
-        // an output is read with the errors of `[sensor]` unless it has its own; of a body between palms these are of the contacts
+        // an output has the errors of `[sensor]` unless it has its own; for a body between palms these are the errors of the contacts
         let common = MeasurementErrors { normal: scene.sensor.noise, rounding: scene.sensor.resolution };
         let unsaid = if !has_palms && outputs.contains(name) { common } else { MeasurementErrors::default() };
         let gain = sensors.get(name).map_or(1.0, |known| known.gain.abs());
         let MeasurementErrors { normal, rounding } = stated(scene, name).unwrap_or(unsaid);
-        // errors of filled cells hang together: a measured value errs for all rows that it stands for, as so many independent errors of their root's size do
+        // errors of filled cells are correlated: a measured value errs for all rows that it stands for, as so many independent errors of their root's size do
         let filled = sparse.iter().find(|own| own.column == *name && own.empty == EmptyCells::Interpolated);
         let together = filled.map_or(1.0, |own| own.stands_for.sqrt()) / gain;
         let errors = MeasurementErrors { normal: normal * together, rounding: rounding * together };
@@ -212,7 +212,7 @@ pub(super) fn tell(
         largest = task.errors.values().map(|errors| errors.variance()).fold(0.0, f64::max).sqrt();
     }
     let errs = driving.is_some() || largest > 0.0;
-    // the first readings of an output whose gain or bias is sought are not its first values
+    // the first measurements of an output whose gain or bias is estimated are not its first values
     let is_output =
         |name: &String| CalibrationKind::of(name).is_some_and(|(c, _)| outputs.iter().any(|o| o == c));
     let reads_otherwise = scene.observer.estimate.iter().any(is_output);
@@ -224,7 +224,7 @@ pub(super) fn tell(
         let common = common.unwrap_or(MeasurementErrors { normal: task.sigma, rounding: 0.0 });
         task.noise = palmistry_observe::Noise::Stated { normal: common.normal, rounding: common.rounding };
         for name in &outputs {
-            // what is read without error is good to a nanometre, or its like
+            // a measurement without stated error is taken to be good to a nanometre, or its like
             task.errors.entry(name.clone()).or_insert(MeasurementErrors { normal: NOMINAL, rounding: 0.0 });
         }
     } else if reads_otherwise {
@@ -233,17 +233,17 @@ pub(super) fn tell(
     Ok(())
 }
 
-/// Whether the readings can tell the gains, biases and delays that are sought at all.
+/// Checks that the measurements can determine the gains, biases and delays that are estimated.
 ///
 /// # Errors
-/// What cannot be told from what.
+/// Which one is not identifiable, and from which others it cannot be distinguished.
 pub(super) fn are_told(
     scene: &Scene,
     system: &System,
     question: &EstimateQuestion,
     signals: &Signals,
 ) -> Result<(), SceneError> {
-    let unobserved = not_told(system, question, signals);
+    let unobserved = not_identifiable(system, question, signals);
     let Some(first) = unobserved.iter().find(|name| CalibrationKind::of(name).is_some()) else {
         return Ok(());
     };
@@ -260,7 +260,7 @@ pub(super) fn are_told(
     Err(scene.error_at(&format!("observer.estimate[{place}]"), message, "estimated here", help))
 }
 
-/// The true value of a sought gain, bias or delay of a simulated sensor; none of any other name.
+/// The true value of an estimated gain, bias or delay of a simulated sensor; none of any other name.
 pub(super) fn truth(scene: &Scene, name: &str) -> Option<f64> {
     let (column, kind) = CalibrationKind::of(name)?;
     let channel = scene.channels.get(column).copied().unwrap_or_default();

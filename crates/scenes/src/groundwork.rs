@@ -1,4 +1,4 @@
-//! What is known of a scene before its readings: the system, what observers are told, what they need.
+//! What is known of a scene before its measurements: the system, the constants given to observers, the columns that they need.
 
 use super::channels;
 use super::known_motion::KnownMotion;
@@ -20,21 +20,21 @@ use std::collections::BTreeMap;
 pub(super) struct Groundwork {
     pub scene: Scene,
     pub system: System,
-    /// What the columns of a recording are called.
+    /// The names of a recording's columns.
     pub names: ColumnNames,
     pub simulation: Option<Simulation>,
-    /// The beginning of the motion of a body that the scene describes, where readings come from elsewhere and guesses are off its values.
+    /// The initial state of the body that the scene describes, where measurements come from elsewhere and guesses are off its values.
     pub begun: Option<Simulation>,
-    /// What the scene describes, whether it is what is read or not; where it is not, no more than its beginning.
+    /// The motion that the scene describes, whether it is measured or not; where it is not, only its initial sample.
     pub described: Option<SystemMotion>,
-    /// Whether it is.
+    /// Whether the measurements are simulated.
     pub simulates: bool,
-    /// What observers are told.
+    /// The constants that observers know.
     pub known: BTreeMap<String, f64>,
 }
 
 impl Groundwork {
-    /// Of a scene whose readings are simulated, or come from elsewhere.
+    /// Of a scene whose measurements are simulated, or come from elsewhere.
     ///
     /// # Errors
     /// What is wrong with the scene or its model, with the place in the scene.
@@ -58,7 +58,7 @@ impl Groundwork {
             (Some(simulated), Guess::Off(_), false) => Some(Simulation::beginning(&scene, simulated)?),
             _ => None,
         };
-        // a recording of what the scene describes is told the same constants
+        // a recording of what the scene describes gets the same constants
         let described = match (&scene.system, &scene.robot) {
             (Some(own), _) if simulates => Some(SystemMotion::of(&scene, &system, own)?),
             (Some(own), _) => Some(SystemMotion::beginning(&scene, &system, own)?),
@@ -69,7 +69,7 @@ impl Groundwork {
         Ok(Groundwork { scene, system, names, simulation, begun, described, simulates, known })
     }
 
-    /// What is simulated.
+    /// The simulated motion, if there is one.
     pub fn simulated(&self) -> Option<&dyn KnownMotion> {
         match (&self.simulation, &self.described) {
             (Some(simulation), _) => Some(simulation),
@@ -83,12 +83,12 @@ impl Groundwork {
         needed(&self.scene, &self.system, &self.known)
     }
 
-    /// The scene's rules for faulty rows, with the resolution of what this system's sensors read, and what empty cells mean.
+    /// The scene's rules for faulty rows, with the resolution of this system's sensors, and the meaning of empty cells.
     pub fn fault_rules(&self) -> FaultRules {
         let mut rules = fault_rules(&self.scene, &self.system);
         let outputs = compared(&self.scene, &self.system);
         let is_output = |name: &str| self.system.outputs.iter().any(|(output, _)| output == name);
-        // what is compared and drives the model as well is neither left out nor made up
+        // an output that is compared and drives the model as well is neither left out nor interpolated
         for name in self.needed() {
             let empty = match (outputs.contains(&name), is_output(&name)) {
                 (true, _) => EmptyCells::NotMeasured,
@@ -101,7 +101,7 @@ impl Groundwork {
     }
 }
 
-/// Whether all that is sought are states of the system: said before anyone asks for readings or a first guess of them.
+/// Checks that everything estimated is a state of the system, before measurements or a first guess are asked for.
 fn known_states(scene: &Scene, system: &System) -> Result<(), SceneError> {
     let states: Vec<&str> = system.states.iter().map(|state| system.symbol_name(*state)).collect();
     for (index, name) in scene.observer.estimate.iter().enumerate() {
@@ -160,8 +160,8 @@ fn needed(scene: &Scene, system: &System, known: &BTreeMap<String, f64>) -> Vec<
     let symbols = system.symbols().filter(|(symbol, info)| {
         let name = system.symbol_name(*symbol);
         // where outputs tie signals these have derivatives for the rank, which no model has
-        let is_for_the_rank =
-            system.longest_word().is_some() && system.derivative_of_signal(*symbol).is_some_and(|k| k > 0);
+        let is_for_the_rank = system.highest_lie_order().is_some()
+            && system.derivative_of_signal(*symbol).is_some_and(|k| k > 0);
         unknown(name)
             && !is_for_the_rank
             && match info.kind {
@@ -173,15 +173,15 @@ fn needed(scene: &Scene, system: &System, known: &BTreeMap<String, f64>) -> Vec<
     symbols.map(|(symbol, _)| system.symbol_name(symbol).to_owned()).chain(outputs).collect()
 }
 
-/// The outputs that are compared with what is sought, and drive nothing.
+/// The outputs that are compared with the estimate, and drive nothing.
 fn compared(scene: &Scene, system: &System) -> Vec<String> {
     let settings = &scene.observer;
     let is_sought =
         |symbol: &Symbol| settings.estimate.iter().any(|name| system.symbol_name(*symbol) == name);
-    // a state that is sought and read has to be there as any other output
+    // a state that is both estimated and measured has to be there as any other output
     let is_sought_by = |name: &str| settings.estimate.iter().any(|other| other == name);
     let is_read = |node: &NodeId| system.graph.symbols_of([*node]).iter().any(is_sought);
-    // nothing is read of an output that is zero
+    // an output that is zero measures nothing
     let zeros = system.zero_outputs();
     let outputs = system.outputs.iter().filter(|(_, node)| !zeros.contains(node));
     let outputs = outputs
@@ -189,7 +189,7 @@ fn compared(scene: &Scene, system: &System) -> Vec<String> {
     outputs.map(|(name, _)| name.clone()).collect()
 }
 
-/// The scene's rules for faulty rows, with the resolution of what this system's sensors read.
+/// The scene's rules for faulty rows, with the resolution of this system's sensors.
 fn fault_rules(scene: &Scene, system: &System) -> FaultRules {
     let mut rules = scene.fault_rules();
     let outputs = system.outputs.iter().map(|(name, _)| name.clone());
@@ -197,10 +197,10 @@ fn fault_rules(scene: &Scene, system: &System) -> FaultRules {
     rules
 }
 
-/// What a column is taken for that never changes in the readings.
+/// How a column is treated that never changes in the measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Steady {
-    /// A constant: the model then has only what the regime asks for.
+    /// A constant: the model then has only the terms of this regime.
     AreConstants,
     /// A column like others: what comes after is not known.
     AreColumns,
@@ -222,7 +222,7 @@ pub(super) fn estimate_question(
     steady: Steady,
 ) -> Result<EstimateQuestion, SceneError> {
     let settings = &scene.observer;
-    // a column that never changes is a constant: the model then has only what the regime asks for
+    // a column that never changes is a constant: the model then has only the terms of this regime
     if steady == Steady::AreConstants {
         known.extend(least::constants(scene, system, &known, signals, ConstantColumns::Driving));
     }

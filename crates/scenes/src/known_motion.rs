@@ -1,4 +1,4 @@
-//! What a simulated motion tells whoever holds answers against it, whether it is a body's or a system's.
+//! A simulated motion, of a body or of a system, as studies use it: true values and measurements.
 
 use super::scene::{Channel, Sensor};
 use super::simulation::Simulation;
@@ -6,12 +6,12 @@ use super::system_motion::SystemMotion;
 use palmistry_observe::{Record, RecordError};
 use std::collections::BTreeMap;
 
-/// What was simulated, as far as studies ask: what is true, and what is read with errors of any size.
+/// A simulated motion as far as studies need it: true values, and measurements with errors of any size.
 pub trait KnownMotion: Sync {
     /// The true values of a state, sample by sample.
     fn truth(&self, name: &str) -> Option<Vec<f64>>;
 
-    /// What is read, with the errors of the outputs that have none of their own, and with those of single columns.
+    /// The measurements, with the errors of the outputs that have none of their own, and with those of single columns.
     ///
     /// # Errors
     /// None that a simulation could bring about.

@@ -1,11 +1,11 @@
-//! What a scene fixes, put into the model: columns that never change in the measurements are constants of it, and terms that vanish with them are gone.
+//! Constants of a scene put into the model: columns that never change in the measurements become constants, and terms that vanish with them are dropped.
 //!
-//! Of a column that drives the model nothing else has to hold: the model is given its values, and these are one. A state that is measured by itself has a rate of its
+//! A column that drives the model needs no further condition: its values are given, and they are all equal. A state that is measured by itself has a rate of its
 //! own in the model; it is a constant where this rate is exactly zero with all other constants put in, so that the smaller model moves as the larger one does.
 //!
-//! Observers put in the columns that drive the model, and follow what is measured as it is read. With the measured states put in as well the right-hand side is a third
+//! Observers put in the columns that drive the model, and integrate the measured states. With the measured states put in as well the right-hand side is a third
 //! shorter and an estimate a sixth faster, and a search whose motion crosses a pole of the equations ends elsewhere by rounding alone (the scene `turning_point`: *lost*
-//! at the pole, or all steps spent behind it). What does not change an answer is left to plans.
+//! at the pole, or all steps spent behind it). What does not change an answer is used by plans alone.
 
 use super::scene::Scene;
 use super::simulation::TOUCH;
@@ -14,7 +14,7 @@ use palmistry_math::number::rational_from_f64;
 use palmistry_observe::{CalibrationKind, Signals, total_rates};
 use std::collections::{BTreeMap, HashMap};
 
-/// Values that differ by less than this part of them are one, where the model says that they are.
+/// Values whose relative difference is below this are equal, where the model says that they are constant.
 const ROUNDED: f64 = 8.0 * f64::EPSILON;
 
 /// Which columns are constants of a model.
@@ -26,7 +26,7 @@ pub(super) enum ConstantColumns {
     MeasuredToo,
 }
 
-/// The columns that are constants of a scene's model, by name; what is `known` otherwise is none of them.
+/// The columns that are constants of a scene's model, by name; anything already in `known` is excluded.
 pub(super) fn constants(
     scene: &Scene,
     system: &System,
@@ -44,10 +44,10 @@ pub(super) fn constants(
         let column = signals.column(place);
         let Some(first) = column.first() else { continue };
         let is_steady = column.iter().all(|value| value == first);
-        // what a simulation adds up again and again is rounded each time
+        // a sum that a simulation accumulates is rounded each time
         let is_nearly = column.iter().all(|value| (value - first).abs() <= ROUNDED * first.abs());
         let is_met = system.find_symbol(name).is_some() && !known.contains_key(name);
-        // of what is sought, or read with a bias, gain or delay that is sought, the readings are no values; what drives a model is put in with these
+        // an estimated column, or one with an estimated bias, gain or delay, has no exact values; those that drive a model are put in with these
         let is_sought = settings.estimate.iter().any(|sought| {
             sought == name
                 || which == ConstantColumns::MeasuredToo
@@ -61,7 +61,7 @@ pub(super) fn constants(
                 found.insert(name.clone(), *first);
             }
         } else if which == ConstantColumns::MeasuredToo && !all_err && !scene.channels.contains_key(name) {
-            // a sensor that errs may read one value of what moves
+            // a sensor with errors may show one value of a state that moves
             outputs.push((name.clone(), *first));
         }
     }

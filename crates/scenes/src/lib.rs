@@ -1,9 +1,9 @@
 //! Experiments, simulated or recorded.
 //!
-//! A [`Scene`] says what is held, how it moves, what the sensors read and which observers are to find out what; it is read
+//! A [`Scene`] says what is held, how it moves, what the sensors measure and which observers are to estimate what; it is read
 //! from a TOML file and checked value by value. A [`Simulation`] moves its body, a [`SystemMotion`] any other system by its own equations; an
-//! [`Experiment`] is a scene with its readings, and runs its observers, once ([`Experiment::run`]) or many times over ([`noise_study`],
-//! [`basins`], [`curvature_map`], or stretch by stretch as [`Studies`]); a [`Reconstruction`] is the shape that all of it tells.
+//! [`Experiment`] is a scene with its measurements, and runs its observers, once ([`Experiment::run`]) or many times over ([`noise_study`],
+//! [`basins`], [`curvature_map`], or stretch by stretch as [`Studies`]); a [`Reconstruction`] is the shape estimated from all of it.
 //!
 //! Beside `verification` this is the place that knows both palms and observers.
 
@@ -20,7 +20,7 @@ mod least;
 mod mirrored;
 mod modes;
 mod motion_rank;
-mod not_told;
+mod not_identifiable;
 mod past_poles;
 mod plan;
 mod recognised;
@@ -73,7 +73,7 @@ pub use stream::{StreamAnswer, StreamEnd, StreamPiece, StreamTally, WindowReport
 #[doc(hidden)]
 pub use study::{
     ARRIVED, Basin, CurvatureMap, CurvatureRatio, NoiseLevel, Studied, StudiedMotion, Studies,
-    StudyMergeError, StudyPart, Told, basins, curvature_map, noise_study,
+    StudyMergeError, StudyPart, WindowBound, basins, curvature_map, noise_study,
 };
 pub use system_motion::SystemMotion;
 pub use terrain::{Closure, ClosureSetting, ComputedRank};

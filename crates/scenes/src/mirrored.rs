@@ -1,7 +1,7 @@
 //! Other states that explain the measurements as well as an estimate does: its mirror images.
 //!
-//! A robot's heading turned by half a turn with a negative scale moves as the robot does, and two compartments that are read as a sum exchange their names. Whoever begins a search near one of two such states finds it, and learns nothing of the other one.
-//! The images are those of [`palmistry_rank::observability::mirrors`], exact and of the class that is described there; those outside of the stated bounds are no others.
+//! A robot's heading turned by half a turn with a negative scale moves as the robot does, and two compartments that are measured as a sum exchange their names. A search that begins near one of two such states finds that one, and nothing of the other.
+//! The images are those of [`palmistry_rank::observability::mirrors`], exact and of the class that is described there; images outside the stated bounds are excluded.
 
 use super::run::Experiment;
 use palmistry_observe::Track;
@@ -9,18 +9,18 @@ use palmistry_rank::observability::{Image, mirrors};
 use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 
-/// No more images are named.
+/// At most this many images are named.
 const MOST: usize = 4;
 
-/// An image that is nearer than so many deviations is no other state.
+/// An image that is nearer than this many deviations is the same state.
 const APART: f64 = 6.0;
 
 impl Experiment {
-    /// Adds the mirror images of what was found to what is said of it.
+    /// Adds the mirror images of the estimate to the remarks of a track.
     pub(super) fn name_mirrors(&self, track: &mut Track) {
         let images = match track.updates.iter().find(|update| update.is_borne_out()) {
             Some(update) => self.images(update.from, &update.estimate, &update.deviations),
-            // of a filter, which has no windows, what it believes at the end
+            // of a filter, which has no windows, its last estimate
             None if track.updates.is_empty() && track.passes() => {
                 let last = track.last().filter(|last| last.deviations.len() == last.state.len());
                 last.map_or_else(Vec::new, |last| self.images(last.time, &last.state, &last.deviations))
@@ -30,12 +30,12 @@ impl Experiment {
         track.remarks.extend(images);
     }
 
-    /// Each image of a state with its deviations, in words.
+    /// Each image of a state with its deviations, as text.
     fn images(&self, time: f64, state: &[f64], deviations: &[f64]) -> Vec<String> {
         let names = self.names();
         let free: HashSet<_> = names.iter().filter_map(|name| self.system.find_symbol(name)).collect();
         let mut system = self.system.clone();
-        // what ties signals to states is no output that is read: it might tell the images apart
+        // an output that ties signals is not measured: it might distinguish the images
         if !system.zero_outputs().is_empty() {
             return Vec::new();
         }

@@ -1,8 +1,8 @@
-//! Several systems side by side: of which of them the readings of each window are.
+//! Several models side by side: which of them explains the measurements of each window.
 //!
-//! A body with friction obeys one system while both contacts slide, another while one rolls, and nobody tells when one follows the other. Each
-//! system of the scene, its own and `[[observer.modes]]`, is estimated on each window by itself; of those whose residual the errors of the readings
-//! explain the one with the least is taken, and where none fits that is said: the window has a change of modes in it, or no model is right. What was
+//! A body with friction obeys one system while both contacts slide, another while one rolls, and the times of the changes are unknown. Each
+//! system of the scene, its own and `[[observer.modes]]`, is estimated on each window by itself; of those whose residual passes the chi-square
+//! test the one with the least is taken, and where none passes that is said: the window has a change of modes in it, or no model is right. What was
 //! learned in the last window that fits, whatever its mode, is where the next begins.
 
 use super::groundwork::{Groundwork, Steady, sample_range};
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A search begins at so many states, unless an earlier one fits.
+/// A search has this many starts, unless an earlier one fits.
 const STARTS: usize = 4;
 
 const BASES: [usize; 9] = [2, 3, 5, 7, 11, 13, 17, 19, 23];
@@ -32,29 +32,29 @@ fn halton(mut number: usize, base: usize) -> f64 {
     sum
 }
 
-/// What a mode makes of a window.
+/// The estimate of a window by one mode.
 #[derive(Clone, Debug)]
 pub struct ModeEstimate {
     /// The mode.
     pub name: String,
-    /// What was sought, in the order of the update's estimate.
+    /// The estimated states, in the order of the update's estimate.
     pub sought: Vec<String>,
-    /// The search: none where it was not asked.
+    /// The search: none where it was not run.
     pub update: Option<Update>,
-    /// What the rank says of its motion through the window, where it decides who may answer: of the motion that was found, where one was that the
-    /// readings bear out, and else of the one that was foretold.
+    /// The rank along its motion through the window, where it decides who may answer: of the motion that was found, where the measurements bear one
+    /// out, and else of the predicted one.
     pub rank: Option<MotionRankFound>,
-    /// Why it had better not answer, by the rank.
+    /// Why the rank objects to its answer.
     pub objection: Option<Objection>,
 }
 
 impl ModeEstimate {
-    /// Whether the readings bear it out.
+    /// Whether the measurements bear it out.
     pub fn fits(&self) -> bool {
         self.update.as_ref().is_some_and(Update::is_borne_out)
     }
 
-    /// What is compared: of the noise's own size where it is stated, else in the outputs' unit.
+    /// The error that modes are compared by: chi-square per degree of freedom where the noise is stated, else the residual in the outputs' unit.
     fn error(&self) -> f64 {
         let of = |update: &Update| match update.fit {
             Some(fit) if fit.from == NoiseFrom::Stated => fit.chi_square / fit.degrees.max(1) as f64,
@@ -64,23 +64,23 @@ impl ModeEstimate {
     }
 }
 
-/// What the modes make of one window.
+/// The estimates of one window by all modes.
 #[derive(Clone, Debug)]
 pub struct ModeWindow {
-    /// The times of its first and its last sample, in s.
+    /// The time of its first sample, in s.
     pub from: f64,
-    /// As above.
+    /// The time of its last sample, in s.
     pub to: f64,
     /// Each mode, the scene's own first.
     pub estimates: Vec<ModeEstimate>,
     /// The one with the least error of those that fit; where the rank decides, the first of those that may answer and fit.
     pub chosen: Option<usize>,
-    /// What the contacts did, where a body was simulated with friction: more than one where they changed.
+    /// The contact modes, where a body was simulated with friction: more than one where they changed.
     pub true_modes: Vec<String>,
 }
 
 impl Experiment {
-    /// The scene's modes on the same readings, the scene's own first.
+    /// The scene's modes on the same measurements, the scene's own first.
     ///
     /// # Errors
     /// What is wrong with a mode's model, with the place in the scene.
@@ -98,14 +98,14 @@ impl Experiment {
             settings.clamp.clear();
             let ground = Groundwork::of(scene, false)?;
             let reading = ReadRecord::whole(self.record.clone());
-            let mut experiment = Experiment::with_readings(ground, reading, None, Steady::AreConstants)?;
+            let mut experiment = Experiment::with_measurements(ground, reading, None, Steady::AreConstants)?;
             experiment.scene.observer.guess = Guess::Values(mode.guess.clone());
             all.push((mode.name.clone(), experiment));
         }
         Ok(all)
     }
 
-    /// What the modes of the scene make of the readings, window by window; `done` is told of each window.
+    /// The estimates of all modes of the scene, window by window; `done` is called after each window.
     ///
     /// # Errors
     /// As [`Experiment::task`], of any mode.
@@ -115,7 +115,7 @@ impl Experiment {
         self.has_windows()?;
         let window = self.steps_of_windows();
         let mut learned: BTreeMap<String, f64> = BTreeMap::new();
-        // where each mode that fitted came to at the end of its window
+        // the state at the end of the window of each mode that fitted
         let mut reached: Vec<Option<Vec<f64>>> = vec![None; modes.len()];
         let mut windows = Vec::new();
         for first in (0..times.len() - window).step_by(window) {
@@ -127,7 +127,7 @@ impl Experiment {
                 let name = name.clone();
                 Ok((ModeEstimate { name, sought, update, rank: None, objection: None }, came_to))
             };
-            // each mode by itself: nothing of one is known to another in the same window
+            // each mode by itself: no mode uses another one's estimate in the same window
             let found: Vec<Result<_, SceneError>> = modes.par_iter().enumerate().map(one).collect();
             // of several faults the first mode's, on any number of threads
             let found: Vec<_> = found.into_iter().collect::<Result<_, _>>()?;
@@ -136,7 +136,7 @@ impl Experiment {
             let fitting = (0..estimates.len()).filter(|place| estimates[*place].fits());
             let chosen = fitting.min_by(|a, b| estimates[*a].error().total_cmp(&estimates[*b].error()));
             for (place, came_to) in reached.iter_mut().enumerate() {
-                // one that fits worse than another is no beginning
+                // one that fits worse than another is no initial state
                 came_to.take_if(|_| Some(place) != chosen);
             }
             if let Some(chosen) = chosen
@@ -214,7 +214,7 @@ impl Experiment {
                 let part = if number == 0 { 0.5 } else { halton(number, BASES[place % BASES.len()]) };
                 let drawn = sample_range(&self.system, name).map(|[low, high]| low + part * (high - low));
                 let guessed = guess.get(name).filter(|_| number == 0).copied();
-                // what moves is drawn anew where it did not do as it was
+                // a state that moves is drawn anew from the second start on
                 let told = learned.get(name).filter(|_| number == 0 || self.is_constant(name)).copied();
                 let value = told.or(guessed).or(drawn).unwrap_or(*given);
                 let [low, high] =
@@ -231,7 +231,7 @@ impl Experiment {
         kind == Some(UnknownKind::Parameter)
     }
 
-    /// What one mode makes of a window, and where it came to.
+    /// The estimate of a window by one mode, and its state at the end.
     pub(super) fn search(
         &self,
         starts: Vec<Vec<f64>>,
@@ -265,7 +265,7 @@ impl Experiment {
         Ok((best, None))
     }
 
-    /// What the contacts of a body that was simulated with friction did between two times.
+    /// The contact modes of a body that was simulated with friction, between two times.
     pub(super) fn true_modes(&self, from: f64, to: f64) -> Vec<String> {
         let Some(simulation) = &self.simulation else { return Vec::new() };
         let all = &simulation.modes;

@@ -1,7 +1,7 @@
-//! What the rank floor says of an observer's equations at the moments of a motion: whether what is read tells what is followed there, and how well.
+//! The observability rank of an observer's equations along a motion: whether the measurements determine the followed states there, and how well.
 //!
 //! The rows are the differentials, by the states that are followed, of the outputs and of their derivatives along the motion (4.36 and 4.37, with the inputs as
-//! they are read and not as they might be chosen). Whatever is read is a known signal; its derivatives are those of a polynomial through neighbouring
+//! they are measured and not as they might be chosen). All measurements are known signals; their derivatives are those of a polynomial through neighbouring
 //! samples. A motion that crosses a zero of a divisor has met a pole, wherever its samples lie.
 
 use nalgebra::DMatrix;
@@ -18,20 +18,20 @@ use std::collections::{HashMap, HashSet};
 /// Outputs are differentiated no more often than this.
 const MOST: usize = 3;
 
-/// The same where it is asked once: beside columns that drive the model, and without. Of a polynomial of degree [`DEGREE`] no more derivatives are known.
+/// The same for a single motion: with columns that drive the model, and without. A polynomial of degree [`DEGREE`] has no more derivatives.
 const MOST_ONCE: [usize; 2] = [DEGREE, 10];
 
-/// Derivatives of more parts than this are not taken: they grow with each.
+/// Derivatives with more nodes than this are not taken: they grow with each order.
 const MOST_PARTS: usize = 200_000;
 
-/// Derivatives of what is read are those of a polynomial of this degree through so many samples to either side.
+/// Derivatives of measurements are those of a polynomial of this degree through this many samples to either side.
 const DEGREE: usize = 5;
 const BESIDE: usize = 10;
 
-/// The rank is asked at so many samples of a window or a few more, evenly spread.
+/// The rank is computed at this many samples of a window or a few more, evenly spread.
 const ASKED: usize = 20;
 
-/// A divisor is zero where a motion ends that is this part of the largest that it was before.
+/// A divisor counts as zero where a motion ends if it is below this fraction of its earlier maximum.
 const NEXT_TO_NOTHING: f64 = 1e-2;
 
 /// Where the value of a symbol comes from.
@@ -49,23 +49,23 @@ struct Divisor {
     program: Program,
 }
 
-/// The rank of an observer's equations, ready to be asked along motions.
+/// The rank of an observer's equations, ready to be computed along motions.
 pub struct MotionRank {
     decider: RankDecider<'static>,
     values: HashMap<Symbol, Value>,
     divisors: Vec<Divisor>,
     columns: Vec<usize>,
-    /// How many states are followed: the rank where all is seen.
+    /// How many states are followed: the rank where all of them are observable.
     pub of: usize,
-    /// So many derivatives of each output are among the rows.
+    /// The number of derivatives of each output among the rows.
     order: usize,
-    /// So many derivatives of columns have symbols.
+    /// The number of derivatives of columns that have symbols.
     most: usize,
 }
 
 impl MotionRank {
-    /// Of a task's equations. Outputs are differentiated until the rank is full at the first sample with these values of what is sought, three
-    /// times at most, since it is asked window by window.
+    /// Of a task's equations. Outputs are differentiated until the rank is full at the first sample with these values of the estimated states, three
+    /// times at most, since it is computed window by window.
     pub fn new(task: &Task<'_>, sought: &[f64]) -> MotionRank {
         MotionRank::with(task, sought, MOST)
     }
@@ -120,8 +120,8 @@ impl MotionRank {
         MotionRank { decider, values, divisors, columns, of: model.symbols.len(), order, most }
     }
 
-    /// What it says of the motion through all samples of a task, from these values of what is sought at the first; outputs that are states are where they
-    /// are read.
+    /// The rank along the motion through all samples of a task, from these estimated states at the first; outputs that are states have their
+    /// measured values.
     pub fn along(&self, task: &Task<'_>, sought: &[f64]) -> MotionRankFound {
         let times = task.signals.times();
         let mut found = MotionRankFound {
@@ -197,7 +197,7 @@ impl MotionRank {
         }
     }
 
-    /// The divisor that is next to nothing where a motion could not be followed any further, of those that the last state before tells.
+    /// The divisor that nearly vanishes where a motion could not be followed any further, evaluated at the last state before.
     fn pole_at(&self, inputs: &Inputs<'_>, states: &[Vec<f64>], time: f64) -> Option<PoleMet> {
         let mut here = vec![0.0; self.columns.len()];
         inputs.task.signals.at(&self.columns, time, &mut here);
@@ -245,7 +245,7 @@ impl MotionRank {
     }
 }
 
-/// Symbols for the derivatives of what is read, and where the values of all symbols come from.
+/// Symbols for the derivatives of measurements, and where the values of all symbols come from.
 fn jets(
     graph: &mut Graph,
     model: &Model,
@@ -271,7 +271,7 @@ fn jets(
     (jets, values)
 }
 
-/// What the equations divide by, as far as it changes.
+/// The divisors of the equations, as far as they change.
 fn divisors(model: &Model, task: &Task<'_>, values: &HashMap<Symbol, Value>) -> Vec<Divisor> {
     let mut system = model.system.clone();
     let (_, EstimateQuestion { known, inputs, .. }) = &*task.source;
@@ -299,7 +299,7 @@ fn divisors(model: &Model, task: &Task<'_>, values: &HashMap<Symbol, Value>) -> 
     factors.into_iter().filter_map(|factor| of(&mut system, factor)).collect()
 }
 
-/// The factors of all that is divided by, each once; what divides a divisor, as the cosine in `1/tan`, is none.
+/// The factors of all divisors, each once; a divisor of a divisor, as the cosine in `1/tan`, is excluded.
 fn collect_divisors(
     graph: &Graph,
     node: NodeId,
@@ -337,7 +337,7 @@ struct Inputs<'a> {
 }
 
 impl Inputs<'_> {
-    /// What is read at a sample, a row a column.
+    /// The measurements at a sample, a row a column.
     fn values_at(&self, row: usize) -> Vec<Vec<f64>> {
         self.columns.iter().map(|column| vec![self.task.signals.column(*column)[row]]).collect()
     }

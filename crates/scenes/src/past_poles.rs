@@ -1,10 +1,10 @@
-//! Windows that the state of the thesis does not pass, answered by the one constraint.
+//! Windows on which the thesis's state fails, estimated by the constraint instead.
 //!
 //! Where a palm and the body turn at one rate the contacts' rates have a pole in the thesis's state, and a search on a window that holds such a moment is lost a few
-//! thousandths off the truth. What is behind it has none: the body's point at the contact does not enter the palm, `0 = v_i - omega0 d_i - w_i s_i`, with `v_i` the
-//! velocity of the centre of mass along the palm's normal. So, where a scene between flat palms gives no first guess, a window that none of the readings
-//! bear out is asked again by itself, from what its own readings tell without a guess: of the thesis's state, unless the rank floor says that this motion meets
-//! a pole, and then of the constraint's. Which has answered is said.
+//! thousandths off the truth. The constraint behind it has none: the body's point at the contact does not enter the palm, `0 = v_i - omega0 d_i - w_i s_i`, with `v_i` the
+//! velocity of the centre of mass along the palm's normal. So, where a scene between flat palms gives no first guess, a window that none of the measurements
+//! bear out is estimated again by itself, from its own measurements without a guess: with the thesis's state, unless the rank shows that this motion meets
+//! a pole, and then with the constraint's. The report says which one has answered.
 
 use super::groundwork::{Groundwork, Steady};
 use super::run::Experiment;
@@ -17,23 +17,23 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The equations of `proofs/moll2002/constraint/palms.proof`, which proves what they have to do with those of the thesis.
+/// The equations of `proofs/moll2002/constraint/palms.proof`, which proves their relation to those of the thesis.
 pub const EQUATIONS: &str = include_str!("palms.proof");
 
-/// What its observer seeks, beside `rho` where that is sought.
+/// What its observer estimates, beside `rho` where that is estimated.
 const SOUGHT: [&str; 5] = ["r1", "r2", "omega0", "v1", "v2"];
 
 /// In m/s^2.
 const GRAVITY: f64 = 9.81;
 
-/// An observer of a window by itself.
+/// An observer of a single window.
 struct Alone<'a> {
     experiment: &'a Experiment,
     /// The rank of its equations, made at the first window.
     rank: Option<MotionRank>,
 }
 
-/// What it has found.
+/// The estimate of a window.
 struct Found {
     update: Update,
     /// The states sample by sample, and their deviations.
@@ -41,7 +41,7 @@ struct Found {
 }
 
 impl Experiment {
-    /// Asks again for the windows of a track that the readings do not bear out.
+    /// Estimates again the windows of a track that the measurements do not bear out.
     pub(super) fn pass_poles(&self, method: Method, track: &mut Track, interrupt: &AtomicBool) {
         if !self.may_pass_poles(method) || track.updates.iter().all(Update::is_borne_out) {
             return;
@@ -53,10 +53,10 @@ impl Experiment {
         for place in 0..track.updates.len() {
             let update = &track.updates[place];
             let is_last = track.updates.get(place + 1).is_none_or(|next| next.from > update.from);
-            // blind where the readings do not bear it out says nothing of the truth
-            let is_blind =
-                matches!(update.end, UpdateEnd::Blind { .. }) && update.fit.is_none_or(|fit| fit.fits);
-            let is_lost = !update.is_borne_out() && !is_blind;
+            // uninformative where the measurements do not bear it out says nothing of the truth
+            let is_unobservable =
+                matches!(update.end, UpdateEnd::Unobservable { .. }) && update.fit.is_none_or(|fit| fit.fits);
+            let is_lost = !update.is_borne_out() && !is_unobservable;
             let Some(rows) = self.rows(update).filter(|_| is_last && is_lost) else { continue };
             if interrupt.load(Ordering::Relaxed) {
                 break;
@@ -90,7 +90,7 @@ impl Experiment {
     }
 
     /// Tests the seams at both ends of the windows that were replaced. What their errors have in common with those of their neighbours is not known: the
-    /// reading that two windows share, and what a window has inherited of one that is gone.
+    /// measurement that two windows share, and what a window has inherited of one that is gone.
     fn meet_again(&self, track: &mut Track, replaced: &[usize]) {
         let seam = |from: usize, to: usize| {
             let [before, after] = [&track.updates[from], &track.updates[to]];
@@ -115,7 +115,7 @@ impl Experiment {
         }
     }
 
-    /// Whether the scene is one between flat palms without friction, without a first guess, by windows, and seeks no more than the constraint tells.
+    /// Whether the scene is one between flat palms without friction, without a first guess, by windows, and estimates no more than the constraint determines.
     fn may_pass_poles(&self, method: Method) -> bool {
         let names = self.names();
         let settings = &self.scene.observer;
@@ -132,7 +132,7 @@ impl Experiment {
             && SOUGHT[..3].iter().all(|name| names.contains(name))
     }
 
-    /// The same readings with the constraint's system; none where a reading is missing that it needs.
+    /// The same measurements with the constraint's system; none where a measurement is missing that it needs.
     fn by_constraint(&self) -> Option<Experiment> {
         let system = System::parse("palms.proof", EQUATIONS, Path::new("")).ok()?;
         let mut scene = self.scene.clone();
@@ -145,7 +145,7 @@ impl Experiment {
         scene.columns.clear();
         let ground = Groundwork::with_system(scene, system, false).ok()?;
         let reading = ReadRecord::whole(self.record.clone());
-        Experiment::with_readings(ground, reading, None, Steady::AreConstants).ok()
+        Experiment::with_measurements(ground, reading, None, Steady::AreConstants).ok()
     }
 
     /// The rows of an update's window.
@@ -154,7 +154,7 @@ impl Experiment {
         Some(row(update.from)?..row(update.to)? + 1)
     }
 
-    /// Puts what was found of a window in the place of what was not.
+    /// Replaces the update and the estimates of a window by those that were found.
     fn replace(&self, track: &mut Track, place: usize, rows: &Range<usize>, found: Found) {
         let before = &track.updates[place];
         if matches!(before.end, UpdateEnd::Lost(_)) {
@@ -173,7 +173,7 @@ impl Experiment {
 }
 
 impl Alone<'_> {
-    /// The state of a window that the readings bear out, by what the thesis calls what is sought.
+    /// The state of a window that the measurements bear out, by the thesis's names of the estimated states.
     ///
     /// # Errors
     /// That there is none, and what the rank objects to, if anything.
@@ -187,13 +187,13 @@ impl Alone<'_> {
         let start = own.told_by_palms(true).ok_or(None)?;
         let mut task = own.task(interrupt).map_err(|_| None)?;
         let rank = self.rank.get_or_insert_with(|| MotionRank::new(&task, &start));
-        // how well it is seen says the bound of the window
+        // the bound of the window says how well it is observable
         if let Some(objection) = rank.along(&task, &start).objection(f64::INFINITY) {
             return Err(Some(objection));
         }
         let names = own.names();
         task.guess.clone_from(&start);
-        // the rate at which a body of this size swings: what turns or moves more slowly is no less seen for it
+        // the rate at which a body of this size swings: a slower turn or motion is as observable
         let rate = (GRAVITY / start[0].abs().max(f64::MIN_POSITIVE)).sqrt();
         for ((name, size), value) in names.iter().zip(&mut task.sizes).zip(&start) {
             let natural = match *name {

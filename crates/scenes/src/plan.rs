@@ -1,4 +1,4 @@
-//! What a scene requires of its model, before anything is estimated: constants, the least model with its proof file, what it costs, and what the measurements can tell.
+//! What a scene requires of its model, before anything is estimated: constants, the least model with its proof file, its cost, and what is observable from the measurements.
 
 use super::least::{self, ConstantColumns};
 use super::motion_rank::MotionRank;
@@ -22,25 +22,25 @@ use std::time::Instant;
 pub struct ScenePlan {
     /// The states of the model's file.
     pub states: Vec<String>,
-    /// What is estimated.
+    /// The estimated states.
     pub estimated: Vec<String>,
-    /// Outputs that are followed beside it, since their rates depend on it.
+    /// Outputs that are followed beside the estimated states, since their rates depend on them.
     pub followed: Vec<String>,
     /// The outputs with which an estimate is compared.
     pub compared: Vec<String>,
-    /// What has one value all along, in the order of its names.
+    /// The quantities with one value all along, in the order of their names.
     pub constants: Vec<PlanConstant>,
     /// Columns of the measurements that drive the model.
     pub driving: Vec<String>,
-    /// Columns that are constant in some windows and not in others: from which time on they are, or until when, in s.
+    /// Columns that are constant for a part of the recording, with the first and last time in s.
     pub steady_for_a_while: Vec<SteadyStretch>,
     /// Operations of the right-hand side with every column as a signal, and with constants put in.
     pub operations: [usize; 2],
-    /// Their times, in ns; NaN where no times are kept.
+    /// Their times, in ns; NaN where no times are measured.
     pub nanoseconds: [f64; 2],
     /// The proof file of the least model, or why there is none.
     pub least: Result<LeastModel, String>,
-    /// What the measurements can tell generically, by the least model.
+    /// The generic observability of the least model.
     pub generic: Option<PlanRank>,
     /// The rank along the motion, from the true values where they are known, else from the first guess.
     pub along: MotionRankFound,
@@ -55,29 +55,29 @@ pub struct PlanConstant {
     pub name: String,
     /// Its value, in the file's unit.
     pub value: f64,
-    /// Whether a column of the measurements has this value in every sample, but for rounding; else the scene says it.
+    /// Whether a column of the measurements has this value in every sample, up to rounding; else the scene states it.
     pub is_measured: bool,
 }
 
-/// A column that has one value at the beginning or at the end of a recording, and not all along.
+/// A column that has one value at the start or at the end of a recording, and not all along.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SteadyStretch {
     /// The column.
     pub name: String,
-    /// The first and the last time at which it has this value, in s.
+    /// The first time at which it has this value, in s.
     pub from: f64,
-    /// See `from`.
+    /// The last time at which it has this value, in s.
     pub to: f64,
     /// Its value.
     pub value: f64,
 }
 
-/// The generic rank of the least model, and what it says of each unknown.
+/// The generic rank of the least model, and the unobservable unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanRank {
-    /// The rank is no less.
+    /// A lower bound of the rank.
     pub at_least: usize,
-    /// Nor more.
+    /// An upper bound of the rank.
     pub at_most: usize,
     /// The number of unknowns.
     pub of: usize,
@@ -87,10 +87,10 @@ pub struct PlanRank {
     pub cures: Vec<String>,
 }
 
-/// A stretch of one value is worth telling from this part of all samples on.
+/// A stretch of one value is reported from this fraction of all samples on.
 const WORTH_TELLING: f64 = 0.2;
 
-/// The right-hand side is evaluated so often for its time, three times over.
+/// The right-hand side is evaluated this often for its time, three times over.
 const EVALUATIONS: usize = 2000;
 
 impl Experiment {
@@ -160,7 +160,7 @@ impl Experiment {
         known.iter().map(constant).collect()
     }
 
-    /// The model with what is known.
+    /// The model with known values put in.
     fn model_with(&self, known: BTreeMap<String, f64>) -> Option<Arc<Model>> {
         let question = EstimateQuestion { known, ..self.question.clone() };
         let task = Task::new(&self.system, &question, &self.signals, &UNINTERRUPTED).ok()?;
@@ -202,7 +202,7 @@ impl Experiment {
         least
     }
 
-    /// Columns that are constants of the model at the beginning or the end, for a good part of the samples and not for all: by the same rule as for all of them.
+    /// Columns that are constants of the model at the start or the end, for a good part of the samples and not for all: by the same rule as for all of them.
     fn steady_for_a_while(&self, known: &BTreeMap<String, f64>) -> Vec<SteadyStretch> {
         let times = self.signals.times();
         let mut found = Vec::new();
@@ -231,7 +231,7 @@ impl Experiment {
         found
     }
 
-    /// The proof file of what the observers believe, with constants put in and inputs in the drift.
+    /// The proof file of the observers' model, with constants put in and inputs in the drift.
     fn least_model(
         &self,
         model: &Model,
@@ -275,11 +275,11 @@ impl Experiment {
         reduce(system, &question, import).map_err(|why| why.to_string())
     }
 
-    /// The generic rank of the least model, and which of what is estimated it does not tell.
+    /// The generic rank of the least model, and which of the estimated states are unobservable.
     fn generic(&self, least: &LeastModel) -> Option<PlanRank> {
         let system = System::parse("the least model", &least.text, Path::new("")).ok()?;
         if !system.zero_outputs().is_empty() {
-            // what outputs tie is not driven at will: the rank is that of a branch
+            // signals tied by outputs are not driven at will: the rank is that of a branch
             return None;
         }
         let answer = generic_answer(&system, &Assignment::new(), Ceiling::Rests);
@@ -303,15 +303,15 @@ impl Experiment {
             other.outputs.push((name.clone(), node));
             other.output_guards.push(Vec::new());
             let with = generic_answer(&other, &Assignment::new(), Ceiling::Rests);
-            // each of them has to be shown to be observable: what is undecided is no cure
-            let is_seen = |sought: &&str| {
+            // each of them has to be shown to be observable: an undecided unknown makes it no cure
+            let is_observable = |sought: &&str| {
                 let mut all = with.unknowns.iter();
                 sought == name
                     || all.any(|(symbol, seen)| {
                         other.symbol_name(*symbol) == *sought && *seen == Observability::Yes
                     })
             };
-            if names.iter().all(is_seen) {
+            if names.iter().all(is_observable) {
                 cures.push(name.clone());
             }
         }

@@ -1,26 +1,26 @@
-//! Which of several known bodies was read: the one that explains all readings of the contacts, by chi-square.
+//! Which of several known bodies was measured: the one that explains all measurements of the contacts, by chi-square.
 //!
-//! Of each body of a library the angle and the rate at the first sample are sought; all else follows. A body *fits* where what is left is what the stated errors explain, by the test that every estimate is held to. One that fits is
-//! recognised where no other explains the readings nearly as well: with as many unknowns each, a body is a thousand times less likely than the best where its chi-square is larger by `2 ln 1000`.
+//! Of each body of a library the angle and the rate at the first sample are estimated; all else follows. A body *fits* where its residual passes the chi-square test that every estimate has to pass. One that fits is
+//! recognised where no other explains the measurements nearly as well: with as many unknowns each, a body is a thousand times less likely than the best where its chi-square is larger by `2 ln 1000`.
 
 use palmistry_bodies::shape::Measured;
 use palmistry_observe::Fit;
 
-/// A body that fits is told from another one that fits where it is so many times as likely.
+/// A body that fits is distinguished from another one that fits where it is so many times as likely.
 const LIKELIER: f64 = 1000.0;
 
-/// What is said of a library.
+/// The result for a library.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RecognitionVerdict {
     /// One body fits, and no other nearly as well: its place in the library.
     Recognised(usize),
-    /// Several explain the readings, the best first.
+    /// Several explain the measurements, the best first.
     Alike(Vec<usize>),
     /// None explains them.
     NoneOfThem,
 }
 
-/// What the readings say of one body.
+/// The estimate for one body.
 #[derive(Clone, Debug)]
 pub struct LibraryAnswer {
     /// `name`.
@@ -29,20 +29,20 @@ pub struct LibraryAnswer {
     pub orientation: Measured,
     /// Its rate there, in rad/s.
     pub rate: Measured,
-    /// The root of the mean square of what is left of a contact, in m.
+    /// The root mean square residual of a contact, in m.
     pub rms_residual: f64,
     /// The test of fit: none where no motion of it could be followed.
     pub fit: Option<Fit>,
 }
 
 impl LibraryAnswer {
-    /// Whether it explains the readings.
+    /// Whether it explains the measurements.
     pub fn fits(&self) -> bool {
         self.fit.is_some_and(|fit| fit.fits)
     }
 }
 
-/// What the readings say of a library of bodies.
+/// The estimates for a library of bodies.
 #[derive(Clone, Debug)]
 pub struct Recognition {
     /// Each body, in the order of the scene.
@@ -52,7 +52,7 @@ pub struct Recognition {
 }
 
 impl Recognition {
-    /// Of what the readings say of each.
+    /// From the estimates for each body.
     pub(super) fn of(bodies: Vec<LibraryAnswer>) -> Recognition {
         let square = |place: usize| bodies[place].fit.map_or(f64::INFINITY, |fit| fit.chi_square);
         let mut fitting: Vec<usize> = (0..bodies.len()).filter(|place| bodies[*place].fits()).collect();
@@ -94,7 +94,7 @@ mod tests {
             degrees: 100,
             probability: 0.5,
             outliers: 0,
-            readings: 100,
+            measurements: 100,
             squares: None,
             neighbours: None,
             drift: None,

@@ -1,29 +1,29 @@
-//! What was recovered of a body's shape and motion, as structures.
+//! The estimated shape and motion of a body, as structures.
 
 use super::scene::Method;
 use palmistry_bodies::mechanics::Palm;
 use palmistry_bodies::shape::{Coverage, Measured, ShapeEstimate, SupportSample};
 
-/// What was made out of the shape of a body.
+/// The estimated shape of a body.
 #[derive(Clone, Debug)]
 pub struct Reconstruction {
-    /// What the observer shown recovered of the outline.
+    /// The outline by the shown observer.
     pub track: TouchTrack,
-    /// The shape; none where nothing was seen.
+    /// The shape; none where the body was not observed.
     pub shape: Option<ShapeEstimate>,
-    /// The normals that were touched while the body was seen.
+    /// The normals that were touched while the body was observed.
     pub coverage: Coverage,
-    /// Shape and motion batch estimate of all measurements, where that is where the shape comes from.
+    /// The motion of the batch estimate of all measurements, where the shape comes from it.
     pub whole: Option<WholeMotion>,
-    /// Where neither a motion that explains all readings at once nor windows that fit are an answer, because they contradict each other: then there is no shape.
+    /// The contradiction between the batch estimate and windows that fit, where neither is accepted because of it: then there is no shape.
     pub contradiction: Option<Contradiction>,
-    /// Where the shape that was found is none, because its band is wider than the body, its errors are not linear, its search has not ended, or its motion leaves more than the stated noise.
+    /// Why the estimated shape is rejected: its band is wider than the body, its errors are not linear, its search has not converged, or its residual exceeds the stated noise.
     pub too_wide: Option<TooWide>,
-    /// Where no motion was sought that explains all readings at once, because its samples are too far apart.
+    /// Why no batch estimate of all measurements was made: its samples are too far apart in time.
     pub apart: Option<Apart>,
 }
 
-/// A band that is too wide for what it is about: the deviations are those of a linear model, which holds for small ones only.
+/// A band that is too wide: the deviations are those of a linear model, which holds for small ones only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TooWide {
     /// Half the width of the band where it is widest and was touched, two standard deviations, in m.
@@ -32,38 +32,38 @@ pub struct TooWide {
     pub mean: f64,
 }
 
-/// Samples between which more happens than is followed.
+/// Samples that are too far apart in time to follow the motion between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Apart {
     /// The mean time between two, in s.
     pub between: f64,
-    /// In which gravity moves a body of this size: the root of its mean radius over gravity's acceleration, in s.
+    /// The time scale of a body of this size under gravity: the root of its mean radius over gravity's acceleration, in s.
     pub scale: f64,
 }
 
-/// What a window says of a state, and all readings at once.
+/// A state by a window and by the batch estimate of all measurements, where they differ.
 #[derive(Clone, Debug)]
 pub struct Contradiction {
     /// The window's first sample, in s.
     pub time: f64,
     /// The state.
     pub name: String,
-    /// What the window says.
+    /// Its value by the window.
     pub by_window: Measured,
-    /// What all readings say.
+    /// Its value by the batch estimate.
     pub of_all: Measured,
 }
 
-/// A motion that explains all readings at once.
+/// A motion estimated from all measurements at once.
 #[derive(Clone, Debug)]
 pub struct WholeMotion {
     /// Sample by sample.
     pub samples: Vec<WholeSample>,
-    /// The radius of gyration, where it was sought.
+    /// The radius of gyration, where it was estimated.
     pub gyration: Option<Measured>,
-    /// The root of the mean square of what is left of a contact, in m.
+    /// The root mean square residual of a contact, in m.
     pub rms_residual: f64,
-    /// The standard deviation of a contact by which it is measured, in m: the stated one, or what is left where none is stated.
+    /// The standard deviation of a contact, in m: the stated one, or that of the residuals where none is stated.
     pub sigma: f64,
     /// Whether it is the stated one.
     pub stated: bool,
@@ -74,7 +74,7 @@ pub struct WholeMotion {
 pub struct WholeSample {
     /// In s.
     pub time: f64,
-    /// The orientation, in rad; without error at the first sample, where it says what the frame of the body is.
+    /// The orientation, in rad; without error at the first sample, where it defines the frame of the body.
     pub phi0: Measured,
     /// The body's rate, in rad/s.
     pub omega0: Measured,
@@ -84,30 +84,30 @@ pub struct WholeSample {
     pub centre: [f64; 2],
 }
 
-/// The palms, and what was recovered between them, at one sample.
+/// The palms and the estimates at one sample.
 #[derive(Clone, Copy, Debug)]
 pub struct TouchInstant {
     /// In s.
     pub time: f64,
     /// Directions of the palms in the world, in rad; at the joint.
     pub palms: [f64; 2],
-    /// The contacts by what is read: along the palms from the joint, in m.
+    /// The measured contacts: along the palms from the joint, in m.
     pub sensed: [f64; 2],
-    /// The contacts in the world, as they are read, in m.
+    /// The measured contacts in the world, in m.
     pub contacts: [[f64; 2]; 2],
-    /// The recovered centre of mass in the world, in m.
+    /// The estimated centre of mass in the world, in m.
     pub centre: [f64; 2],
-    /// The recovered orientation, in rad.
+    /// The estimated orientation, in rad.
     pub orientation: f64,
-    /// The recovered points of the outline in the frame of the body, in m.
+    /// The estimated points of the outline in the frame of the body, in m.
     pub points: [[f64; 2]; 2],
-    /// The recovered support radii and the angles of their outward normals in the frame of the body; weights are zero where the observer could not see.
+    /// The estimated support radii and the angles of their outward normals in the frame of the body; weights are zero where the body was not observable.
     pub samples: [SupportSample; 2],
-    /// Whether the observer compared its belief with readings here, and did not hold or integrate blindly.
-    pub seen: bool,
+    /// Whether the observer used measurements here, and did not hold its state or integrate without them.
+    pub is_observed: bool,
 }
 
-/// What one observer recovered of the outline.
+/// The outline by one observer.
 #[derive(Clone, Debug)]
 pub struct TouchTrack {
     /// The observer.

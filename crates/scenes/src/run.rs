@@ -1,4 +1,4 @@
-//! A scene from beginning to end: bodies or a file, what is read of them, and what the observers make of it.
+//! A scene from start to end: bodies or a file, the measurements, and the answers of the observers.
 
 use super::channels;
 use super::groundwork::{Groundwork, Steady, estimate_question, sample_range};
@@ -22,38 +22,38 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// A scene with its readings.
+/// A scene with its measurements.
 #[derive(Clone, Debug)]
 pub struct Experiment {
-    /// What was asked for.
+    /// The scene.
     pub scene: Scene,
-    /// The system that the observers believe in.
+    /// The observers' model.
     pub system: System,
-    /// Absent where the readings come from a file.
+    /// Absent where the measurements come from a file.
     pub simulation: Option<Simulation>,
     /// Present where a system was simulated by its own equations.
     pub motion: Option<SystemMotion>,
-    /// What it adds that wheel 2 rolls where wheel 1 has been, where a robot was simulated.
+    /// The closure, that wheel 2 rolls where wheel 1 has been, and what it makes observable, where a robot was simulated.
     pub closure: Option<Closure>,
-    /// Which body of the library it is, once that was asked: [`Experiment::recognise`].
+    /// Which body of the library it is, once [`Experiment::recognise`] was called.
     pub recognition: Option<Recognition>,
-    /// The readings.
+    /// The measurements.
     pub record: Record,
-    /// The same as instruments write them, where the scene says that they have other names or units than the model.
+    /// The same as instruments write them, where the scene gives other names or units than the model.
     pub written: Option<Record>,
-    /// The time of the first sample where times are counted from there, because they were counted from another age; else zero. In s.
+    /// The time of the first sample, in s, where times are counted from there because it is far from zero; else zero.
     pub origin: f64,
-    /// What was wrong with the rows of a file.
+    /// The faults of a file's rows.
     pub faults: Vec<Fault>,
     /// The first time as it was written, where times of a file are dates: they are counted from it.
     pub began: Option<String>,
-    /// Columns of a file with empty cells, and what became of these.
+    /// Columns of a file with empty cells, and how these are treated.
     pub sparse: Vec<SparseColumn>,
-    /// So many rows at the beginning and at the end of a file are left out, because a column that drives the model says nothing there.
+    /// How many rows at the start and at the end of a file are left out, because a column that drives the model is empty there.
     pub outside: [usize; 2],
-    /// The readings as curves of time.
+    /// The measurements as curves of time.
     pub signals: Signals,
-    /// What the observers are asked for.
+    /// The states that the observers estimate, and what they know.
     pub question: EstimateQuestion,
 }
 
@@ -62,25 +62,25 @@ pub struct Experiment {
 pub enum Measurements<'a> {
     /// A file, CSV or Parquet.
     File(&'a Path),
-    /// Columns under their names, all of one length: the time, in s, and what is measured.
+    /// Columns under their names, all of one length: the time, in s, and the measurements.
     Columns(Vec<(String, Vec<f64>)>),
 }
 
-/// What one observer made of it.
+/// The answer of one observer.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// The observer.
     pub method: scene::Method,
-    /// What it believed, sample by sample.
+    /// Its estimates, sample by sample.
     pub track: Track,
-    /// In s; NaN where no times are kept.
+    /// The wall-clock time in s; NaN where no times are kept.
     pub seconds: f64,
-    /// The shape that it tells, where that was asked for: of the answer that is shown.
+    /// The shape estimated from it, where that was asked for: of the answer that is shown.
     pub reconstruction: Option<Box<Reconstruction>>,
 }
 
 impl Answer {
-    /// Replaces each time on the wall by NaN.
+    /// Replaces each wall-clock time by NaN.
     pub fn forget_times(&mut self) {
         self.seconds = f64::NAN;
         for update in &mut self.track.updates {
@@ -90,7 +90,7 @@ impl Answer {
 }
 
 impl Experiment {
-    /// Simulates a scene, or takes its readings from a file: `data`, or else the one that the scene names.
+    /// Simulates a scene, or takes its measurements from a file: `data`, or else the one that the scene names.
     ///
     /// # Errors
     /// What is wrong with the scene, its model or the file, with the place in the scene.
@@ -100,7 +100,7 @@ impl Experiment {
         Experiment::on(ground, file.as_deref())
     }
 
-    /// The experiment with measurements of a system that need not be a file's: where the scene names its model, that is not looked for.
+    /// The experiment with measurements of a system that need not come from a file: the model that the scene names is not read.
     ///
     /// # Errors
     /// As for [`Experiment::new`].
@@ -118,7 +118,7 @@ impl Experiment {
                 let rows = RecordRows::of_columns("the measurements", columns, &needed, &ground.names);
                 let reading = rows.and_then(|rows| rows.settle(&ground.fault_rules()));
                 let reading = reading.map_err(|error| unusable(&ground.scene, &error))?;
-                Experiment::with_readings(ground, reading, None, Steady::AreConstants)
+                Experiment::with_measurements(ground, reading, None, Steady::AreConstants)
             }
         }
     }
@@ -133,7 +133,7 @@ impl Experiment {
                 let mut record = simulated.read(&scene.sensor, &scene.channels, scene.seed).map_err(place)?;
                 let mut written = None;
                 if !names.sources.is_empty() {
-                    // what is observed is what would be read of what is written
+                    // what is observed is the written record as it would be read again
                     let own = names.written(&record).map_err(place)?;
                     record = names.read(&own, record.names()).map_err(place)?;
                     written = Some(own);
@@ -151,14 +151,14 @@ impl Experiment {
                 return Err(scene.error_at("title", "there is nothing to observe", "this scene", help));
             }
         };
-        Experiment::with_readings(ground, reading, written, Steady::AreConstants)
+        Experiment::with_measurements(ground, reading, written, Steady::AreConstants)
     }
 
     /// The experiment with these measurements.
     ///
     /// # Errors
-    /// What is wrong with the readings, or with what is asked of them, with the place in the scene.
-    pub(super) fn with_readings(
+    /// What is wrong with the measurements or with what is estimated from them, with the place in the scene.
+    pub(super) fn with_measurements(
         ground: Groundwork,
         reading: ReadRecord,
         written: Option<Record>,
@@ -183,7 +183,7 @@ impl Experiment {
             scene.error_at("observer.known", error.to_string(), "measurements without these", "")
         })?;
         let question = {
-            // of a recording it is that of what the scene describes
+            // for a recording, the truth is that of the motion that the scene describes
             let truth = |name: &str| match simulation.as_ref().or(begun.as_ref()) {
                 Some(simulation) => simulation.truth(name)?.first().copied(),
                 None => described.as_ref()?.truth(name)?.first().copied(),
@@ -213,7 +213,7 @@ impl Experiment {
             signals,
             question,
         };
-        // whether the model can be made at all is better known now
+        // with the measurements at hand, check that the model can be built
         experiment.task(&UNINTERRUPTED)?;
         Ok(experiment)
     }
@@ -264,7 +264,7 @@ impl Experiment {
         )?;
         let settings = &self.scene.observer;
         (task.inherit, task.whole, task.loss) = (settings.inherit, settings.whole, settings.loss);
-        // who gives no guess has other ways to begin anew
+        // without a guess there are other ways to restart
         task.restarts = settings.guess != Guess::None;
         for (name, bounds) in self.names().into_iter().zip(&mut task.bounds) {
             *bounds = settings.bounds.get(name).copied().unwrap_or(*bounds);
@@ -273,7 +273,7 @@ impl Experiment {
         Ok(task)
     }
 
-    /// The fastest change of an output from one sample to the next, per s.
+    /// The largest slope of an output from one sample to the next, per s.
     fn fastest(&self, task: &Task<'_>) -> f64 {
         let times = self.signals.times();
         let columns = task.full.outputs.iter().filter_map(|name| self.signals.find(name));
@@ -290,7 +290,7 @@ impl Experiment {
         fastest
     }
 
-    /// The readings of the first window, for who seeks a state without a first guess.
+    /// The measurements of the first window, for estimators that need no first guess.
     ///
     /// # Errors
     /// The name of what is missing.
@@ -310,7 +310,7 @@ impl Experiment {
         self.scene.observer.window(search)
     }
 
-    /// What every observer of the scene makes of the readings.
+    /// The answers of all observers of the scene.
     ///
     /// # Errors
     /// As [`Experiment::task`].
@@ -318,7 +318,7 @@ impl Experiment {
         self.run(&UNINTERRUPTED, &|_| ())
     }
 
-    /// What every observer of the scene makes of the readings; `done` is told of each that has finished.
+    /// The answers of all observers of the scene; `done` is called after each.
     ///
     /// # Errors
     /// As [`Experiment::task`].
@@ -344,17 +344,17 @@ impl Experiment {
         Ok(answers)
     }
 
-    /// The readings as instruments write them: what `--record` keeps.
+    /// The measurements as instruments write them: what `--record` keeps.
     pub fn as_written(&self) -> &Record {
         self.written.as_ref().unwrap_or(&self.record)
     }
 
-    /// The names of what is sought.
+    /// The names of the estimated states.
     pub fn names(&self) -> Vec<&str> {
         self.question.guess.iter().map(|(name, _)| name.as_str()).collect()
     }
 
-    /// The true values of what is sought at a time: none where the readings come from a file, or the time is no sample's.
+    /// The true values of the estimated states at a time: none where the measurements come from a file, or the time is no sample's.
     pub fn truth_at(&self, time: f64) -> Option<Vec<f64>> {
         let row = self.signals.times().iter().position(|other| *other == time)?;
         let truth =
@@ -363,12 +363,12 @@ impl Experiment {
         self.names().iter().map(truth).collect()
     }
 
-    /// The true values of a state, sample by sample: none where the readings come from a file.
+    /// The true values of a state, sample by sample: none where the measurements come from a file.
     pub fn truth(&self, name: &str) -> Option<Vec<f64>> {
         self.simulated()?.truth(name)
     }
 
-    /// What was simulated: none where the readings come from a file.
+    /// The simulated motion: none where the measurements come from a file.
     pub fn simulated(&self) -> Option<&dyn KnownMotion> {
         match (&self.simulation, &self.motion) {
             (Some(simulation), _) => Some(simulation),
@@ -376,7 +376,7 @@ impl Experiment {
         }
     }
 
-    /// Whether it is about a body between palms.
+    /// Whether the scene is about a body between palms.
     pub fn is_about_palms(&self) -> bool {
         let outputs = &self.system.outputs;
         let touches = TOUCH.iter().all(|name| outputs.iter().any(|(output, _)| output == name));
@@ -391,7 +391,7 @@ pub fn error(estimate: f64, truth: f64) -> f64 {
     ((estimate - truth) / size).abs()
 }
 
-/// What is wrong with a file of readings, with the record's own advice.
+/// The error for a file of measurements, with the record's own advice.
 pub(super) fn unusable(scene: &Scene, error: &RecordError) -> SceneError {
     let advice = error.help().map(|help| help.to_string()).unwrap_or_default();
     let help = match error {

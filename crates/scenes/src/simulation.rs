@@ -1,6 +1,6 @@
-//! The body of a scene set in motion, and what sensors and motors tell of it.
+//! The simulated motion of a scene's body, and the measurements of its sensors and motors.
 
-use super::columns::{COLUMNS, Column, SeenAs};
+use super::columns::{COLUMNS, Column, ColumnUse};
 use super::scene::{self, Channel, Scene, SceneError, Sensor, Simulated};
 use palmistry_bodies::mechanics::Palm;
 use palmistry_bodies::mechanics::moving::{
@@ -14,13 +14,13 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
 
-/// The columns that are read by touch; only they have noise.
+/// The columns measured by touch; only they have noise by default.
 pub const TOUCH: [&str; 2] = ["s1", "s2"];
 
-/// Readings without error are taken to be good to a nanometre, where a bound asks for a figure.
+/// The standard deviation of measurements without error, a nanometre, where a bound needs one.
 pub const NOMINAL: f64 = 1e-9;
 
-/// So many samples are the beginning of a motion.
+/// The number of samples of a motion of which only the start is needed.
 pub(super) const BEGINNING: usize = 2;
 
 /// A scene's body in motion.
@@ -47,7 +47,7 @@ impl Simulation {
         Simulation::of_samples(scene, simulated, usize::MAX)
     }
 
-    /// The beginning of the same motion: its first sample is the first one of all of it.
+    /// The start of the same motion: its first sample is that of the whole motion.
     ///
     /// # Errors
     /// As [`Simulation::of`].
@@ -90,7 +90,7 @@ impl Simulation {
                 "the body has to touch both palms at the start, and be pushed by both",
             )
         })?;
-        // a sensor reads at its own times: the moment at which a contact ends is none of them, and may lie so near to one
+        // measurements have their own times: the moment at which a contact ends is none of them, and may lie so near to one
         // that no polynomial can run through both
         let sampled = |time: f64| times.binary_search_by(|other| other.total_cmp(&time)).is_ok();
         trajectory.moments.retain(|moment| sampled(moment.time));
@@ -104,7 +104,7 @@ impl Simulation {
 
     /// The true values of a state of the models, sample by sample: one of the table's, or a constant.
     pub fn truth(&self, name: &str) -> Option<Vec<f64>> {
-        match COLUMNS.iter().find(|column| column.name == name && column.seen_as != SeenAs::Shown) {
+        match COLUMNS.iter().find(|column| column.name == name && column.usage != ColumnUse::Shown) {
             Some(column) => Some(self.values(column)),
             None => self.constants.get(name).map(|value| vec![*value; self.trajectory.moments.len()]),
         }
@@ -128,17 +128,17 @@ impl Simulation {
         Record::new(self.times(), columns.collect())
     }
 
-    /// What sensors and motors tell: the contacts along the palms with normal errors of the standard deviation `noise`,
-    /// rounded to multiples of `resolution` (both in m), and the palms' angles, rates, accelerations and torques as they are.
+    /// The measurements: the contacts along the palms with normal errors of the standard deviation `noise`,
+    /// rounded to multiples of `resolution` (both in m), and the palms' angles, rates, accelerations and torques without error.
     /// The same seed gives the same errors, whatever their size.
     ///
     /// # Errors
     /// None that a simulation could bring about.
-    pub fn readings(&self, noise: f64, resolution: f64, seed: u64) -> Result<Record, RecordError> {
+    pub fn measurements(&self, noise: f64, resolution: f64, seed: u64) -> Result<Record, RecordError> {
         self.read(&Sensor { noise, resolution, jitter: 0.0 }, &BTreeMap::new(), seed)
     }
 
-    /// What sensors and motors tell, each column with its own errors: `gain * x(t - delay) + bias`, normal errors, rounding. What lies
+    /// The measurements, each column with its own errors: `gain * x(t - delay) + bias`, normal errors, rounding. What lies
     /// before the first sample is extrapolated. The same seed gives each column the same errors, whatever their size and those of the
     /// other columns.
     ///
@@ -150,7 +150,7 @@ impl Simulation {
         channels: &BTreeMap<String, Channel>,
         seed: u64,
     ) -> Result<Record, RecordError> {
-        let is_read = |column: &&Column| column.seen_as == SeenAs::Read;
+        let is_read = |column: &&Column| column.usage == ColumnUse::Read;
         let mut read: Vec<&Column> = COLUMNS.iter().filter(is_read).collect();
         read.sort_by_key(|column| !TOUCH.contains(&column.name)); // stable: touch first
         let mut columns: Vec<(String, Vec<f64>)> =
@@ -161,7 +161,7 @@ impl Simulation {
     }
 }
 
-/// What the sensors of some columns make of them: `gain * x(t - delay) + bias`, normal errors, rounding. What lies before the first
+/// Adds the sensors' errors to some columns: `gain * x(t - delay) + bias`, normal errors, rounding. What lies before the first
 /// sample is extrapolated. Outputs have the common errors where they have none of their own; the same seed gives each column the same errors,
 /// whatever their size and those of the other columns.
 pub(super) fn read_with_errors(
@@ -198,7 +198,7 @@ pub(super) fn read_with_errors(
     }
 }
 
-/// What was true a moment before each sample, by the curves through the samples.
+/// The values at the time of each sample less the delay, by the curves through the samples.
 fn late(times: &[f64], values: &[f64], delay: f64) -> Vec<f64> {
     let named = vec![(String::new(), values.to_vec())];
     let Ok(curve) = Signals::new(times.to_vec(), named) else { return values.to_vec() };
@@ -210,7 +210,7 @@ fn late(times: &[f64], values: &[f64], delay: f64) -> Vec<f64> {
     curve.times().iter().map(before).collect()
 }
 
-/// The standard deviation of a reading's error: noise, and the rounding to multiples of the resolution, which is even
+/// The standard deviation of a measurement's error: noise, and the rounding to multiples of the resolution, which is even
 /// over a width of one resolution.
 pub fn deviation(noise: f64, resolution: f64) -> f64 {
     (noise * noise + resolution * resolution / 12.0).sqrt()
@@ -232,7 +232,7 @@ pub(super) fn body(scene: &Scene, simulated: &Simulated) -> Result<(Shape, Optio
 }
 
 /// The radius of a flat palm to a model of circular ones, in m. An arc of this radius departs from its tangent by `s^2/b/2`, and doubles
-/// tell `b (cos(s/b) - 1)` to an eighth of `b eps`: both are about a hundred-millionth of a metre here.
+/// give `b (cos(s/b) - 1)` to an eighth of `b eps`: both are about a hundred-millionth of a metre here.
 const FLAT: f64 = 1e8;
 
 /// Constants of the bodies by the names that the thesis gives them: `m`, `rho`, `I1`, `I2`, `g`, and `b1`, `b2` of models of circular
@@ -247,7 +247,7 @@ pub(super) fn constants(scene: &Scene, simulated: &Simulated, shape: &Shape) -> 
         ("g", body.gravity),
     ];
     let gyration = constants[1].1;
-    // what friction_sliding.proof and its like have for unknowns
+    // the unknowns of friction_sliding.proof and its like
     let inverse =
         [("one_over_m", 1.0 / body.mass), ("rho2", gyration * gyration), ("mu", simulated.palms.friction)];
     let radii = ["b1", "b2"].into_iter().zip(scene.palm_forms).map(|(name, form)| match form {
@@ -301,7 +301,7 @@ fn pose_body(scene: &Scene) -> Result<PoseBody, SceneError> {
 }
 
 impl Scene {
-    /// The body of the scene, to look at its stable poses.
+    /// The body of the scene, for its stable poses.
     ///
     /// # Errors
     /// Where the scene has no body, or one that is not convex, with the place in the scene.

@@ -1,18 +1,18 @@
-//! Times of recordings that are counted from another age, or stand too near to each other to be told apart.
+//! Recordings whose times are counted from a distant origin, or are too near to each other to be distinguished.
 
 use super::scene::{Scene, SceneError};
 use palmistry_observe::Record;
 
-/// Times are counted anew where the first of them is so many times as long ago as the recording lasts.
+/// Times are counted from the first sample where its time exceeds this many durations of the recording.
 const LONG_AGO: f64 = 1000.0;
 
-/// A step between two samples has at least so many steps of the last digit of their times.
+/// The least step between two samples, in units of the last digit of their times.
 const FEWEST_DIGITS: f64 = 100.0;
 
-/// Two samples nearer than this part of the usual step are one.
+/// Two samples nearer than this fraction of the usual step are one.
 const NEAREST: f64 = 1e-6;
 
-/// From when on times are counted.
+/// The origin from which times are counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Since {
     /// In s.
@@ -20,11 +20,11 @@ pub(super) struct Since {
 }
 
 impl Since {
-    /// From the first sample of a record where that is long after the beginning of its age; else from that beginning.
+    /// The time of the first sample of a record where that is far from zero; else zero.
     pub fn first(record: &Record) -> Since {
         let origin = match record.times() {
             [first, .., last] if first.abs() > LONG_AGO * (last - first) => *first,
-            // a single sample lasts no time that its age could be compared with
+            // a single sample has no duration that its time could be compared with
             _ => 0.0,
         };
         Since { origin }
@@ -66,7 +66,7 @@ impl Since {
         if self.origin == 0.0 {
             return Ok(record);
         }
-        // the difference of two times of one age has no rounding
+        // the difference of two times of a similar size has no rounding
         let counted = times.iter().map(|time| time - self.origin).collect();
         let columns =
             record.names().iter().filter_map(|name| Some((name.clone(), record.column(name)?.to_vec())));

@@ -1,11 +1,11 @@
-//! Several observers of one motion, of which the rank says in each window who may answer (section 6.2 asks for several, section 4.5 for other
+//! Several observers of one motion, of which the rank decides in each window who may answer (section 6.2 asks for several, section 4.5 for other
 //! methods near singularities).
 //!
 //! All of them are right, and none is so everywhere: where a palm and the body turn at one rate the state of the thesis has a pole, and the rank of the
-//! codistribution falls on sets of its own for each choice of states. So the motion that is foretold for a window is handed to the rank floor,
+//! codistribution falls on sets of its own for each choice of states. So the rank is computed along the motion that is predicted for a window,
 //! for one observer after the other in the order of the scene ([`MotionRank`]). One that meets a pole, whose rank is short or whose condition exceeds the
-//! scene's limit anywhere in the window is not asked. The first that may answer and whose answer fits the readings, and whose own motion the rank does not
-//! object to either, answers the window; where the readings do not bear it out the next is asked.
+//! scene's limit anywhere in the window is skipped. The first that may answer and whose answer fits the measurements, and whose own motion the rank does not
+//! object to either, answers the window; where the measurements do not bear it out the next is tried.
 
 use super::modes::{ModeEstimate, ModeWindow};
 use super::run::Experiment;
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 impl Experiment {
-    /// What the observers of the scene make of the readings, window by window, where the rank decides who answers; `done` is told of each window.
+    /// The answers of the observers of the scene, window by window, where the rank decides who answers; `done` is called after each window.
     ///
     /// # Errors
     /// As [`Experiment::task`], of any observer.
@@ -30,7 +30,7 @@ impl Experiment {
         self.has_windows()?;
         let (times, window) = (self.signals.times(), self.steps_of_windows());
         let mut ranks: Vec<Option<MotionRank>> = modes.iter().map(|_| None).collect();
-        // where the observer that answered last came to, by the names of its states
+        // the last state of the observer that answered last, by the names of its states
         let mut learned: BTreeMap<String, f64> = BTreeMap::new();
         let mut windows = Vec::new();
         for first in (0..times.len() - window).step_by(window) {
@@ -40,7 +40,7 @@ impl Experiment {
                 let reached: Option<Vec<f64>> =
                     own.names().iter().map(|name| learned.get(*name).copied()).collect();
                 let told = own.told_by_palms(self.scene.observer.guess == Guess::None);
-                // what the window itself tells is nearer than any state of the sample box
+                // the window's own estimate is nearer than any state of the sample box
                 let starts: Vec<Vec<f64>> = match told {
                     Some(told) => std::iter::once(told).chain(reached).collect(),
                     None => own.starts(&learned, reached),
@@ -84,8 +84,8 @@ impl Experiment {
         Ok(windows)
     }
 
-    /// The state at the first sample that the readings between palms tell without a guess, in this observer's own terms; where that is `asked`, and
-    /// all that is sought is among what they tell.
+    /// The state at the first sample that the measurements between palms determine without a guess, in this observer's own terms; where that is `asked`, and
+    /// all estimated states are among those determined.
     pub(super) fn told_by_palms(&self, asked: bool) -> Option<Vec<f64>> {
         if !asked {
             return None;

@@ -1,7 +1,7 @@
-//! A system in motion by its own equations, and what is read of it.
+//! A system that moves by its own equations, and its measurements.
 //!
-//! Observers that know the same equations are tried on it: what they recover is held against the state that the motion had. It is no
-//! second witness of the equations, as a body between palms is.
+//! Observers that know the same equations are tested on it: their estimates are compared with the true state of the motion. It is no
+//! independent check of the equations, as a body between palms is.
 
 use super::scene::{Channel, Scene, SceneError, Sensor, SimulatedSystem};
 use super::simulation::{BEGINNING, read_with_errors};
@@ -29,7 +29,7 @@ impl SystemMotion {
         SystemMotion::of_samples(scene, system, simulated, usize::MAX)
     }
 
-    /// The beginning of the same motion: its first sample is the first one of all of it.
+    /// The start of the same motion: its first sample is that of the whole motion.
     ///
     /// # Errors
     /// As [`SystemMotion::of`].
@@ -119,7 +119,7 @@ impl SystemMotion {
         Record::new(response.times.clone(), columns)
     }
 
-    /// What is read: the outputs with the errors of the sensor, in their own unit, the inputs as they are; columns that have a sensor of
+    /// The measurements: the outputs with the errors of the sensor, in their own unit, the inputs without error; columns that have a sensor of
     /// their own with its errors. The same seed gives the same errors, whatever their size.
     ///
     /// # Errors

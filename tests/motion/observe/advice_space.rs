@@ -15,7 +15,7 @@ fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
 }
 
-/// What is printed goes into the scene. Oracle: the hull of the contacts that `observe` recovers from the readings of that scene alone, in a frame of its own, has the volume that was told.
+/// What is printed goes into the scene. Oracle: the hull of the contacts that `observe` recovers from the measurements of that scene alone, in a frame of its own, has the volume that was told.
 #[test]
 fn a_run_that_is_advised_touches_what_was_told() {
     let folder = folder();

@@ -1,7 +1,7 @@
 //! How well a state is known at every sample, and whether a filter is what it believes of itself.
 //!
 //! Oracles: `x' = a x`, whose bound at any time is written down; the matrix of Cramér and Rao of a pendulum with the state at that very sample for the unknown, whose
-//! readings are followed to both sides by an integrator of these lines and differenced; regression, which a filter without process noise has to come to.
+//! measurements are followed to both sides by an integrator of these lines and differenced; regression, which a filter without process noise has to come to.
 
 use crate::common::{folder, write};
 use crate::observe::{NEVER, answers, experiment};
@@ -11,7 +11,7 @@ use palmistry::observer::{HighGain, Innovations, Observer, Track};
 
 const NOISE: f64 = 0.02;
 
-/// A scene of a system of two lines with its readings' noise.
+/// A scene of a system of two lines with its measurements' noise.
 fn scene(equations: &str, start: &str, more: &str, seed: u64) -> (tempfile::TempDir, Experiment) {
     let folder = folder();
     write(&folder, "own.proof", format!("system \"A system of its own\" {equations}"));

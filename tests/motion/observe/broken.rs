@@ -50,7 +50,7 @@ fn a_motion_ends_where_a_contact_breaks_and_the_rest_is_observed() {
     }
 }
 
-/// A sample close before the end: no curve runs through two readings a picosecond apart, so the end itself is no reading.
+/// A sample close before the end: no curve runs through two measurements a picosecond apart, so the end itself is no measurement.
 #[test]
 fn a_sample_next_to_the_end_spoils_nothing() {
     let (_, time, _) = lost_at(&opening());

@@ -124,7 +124,7 @@ fn delays_of_contacts_are_found() {
     }
 }
 
-/// Of a spring that swings freely no reading of its place tells the gain from the amplitude; where gravity pulls, they do.
+/// Of a spring that swings freely no measurement of its place tells the gain from the amplitude; where gravity pulls, they do.
 #[test]
 fn what_the_rank_does_not_tell_is_refused_in_words() {
     let folder = folder();
@@ -168,7 +168,7 @@ fn what_the_rank_does_not_tell_is_refused_in_words() {
     assert_ne!(output.status.code(), Some(2), "{found}");
     let (output, found) = observe(&scene("driven", "u.delay"), &[]);
     assert!(refusal(&output, &found).0.starts_with("the delay of 'u' cannot be estimated"), "{found}");
-    // it is told from the amplitude by gravity, and the readings then contradict a model that has it
+    // it is told from the amplitude by gravity, and the measurements then contradict a model that has it
     let (output, _) = observe(&scene("hung", "x.gain"), &[]);
     assert_eq!(output.status.code(), Some(1));
     let (_, found) = observe(&scene("free", "x.bias"), &[]);

@@ -31,7 +31,7 @@ fn worst(text: &str) -> (f64, usize) {
 }
 
 /// The model knows the equations of the proof file, the body Newton's laws: they agree to what the curves between samples leave,
-/// and a model of flat palms does not fit the same readings.
+/// and a model of flat palms does not fit the same measurements.
 #[test]
 fn a_body_between_arcs_is_recovered_and_flat_palms_do_not_explain_it() {
     let (found, converged) = worst(&scene());

@@ -105,7 +105,7 @@ struct Counts {
     held: usize,
     /// All errors do.
     held_everywhere: usize,
-    /// All readings at once were the answer.
+    /// All measurements at once were the answer.
     whole: usize,
     /// The mean square of errors over that of deviations, of each body that its band holds.
     squares: Vec<f64>,
@@ -210,7 +210,7 @@ fn shape_coverage() {
             counts.whole
         );
         (all, told, held) = (all + counts.bodies, told + counts.told, held + counts.held);
-        // no more than a nanometre is believed of readings without noise, and rounding is far below it
+        // no more than a nanometre is believed of measurements without noise, and rounding is far below it
         if noise > 0.0 {
             roots.push(counts.root());
         }
@@ -264,7 +264,7 @@ fn the_spline_of_section_4_6_is_found_with_its_kinks() {
         let found = experiment.reconstruct(&answers(&experiment), &NEVER).expect("two palms");
         let (errors, shape) = (errors(&experiment, &found).unwrap(), found.shape.as_ref().unwrap());
         println!("{noise:e}: {:?} {}", errors.largest, errors.worst);
-        let whole = found.whole.as_ref().expect("all readings at once");
+        let whole = found.whole.as_ref().expect("all measurements at once");
         assert!(errors.worst < 1.0 && found.contradiction.is_none());
         let truth = &experiment.simulation.as_ref().unwrap().shape;
         let extent = shape.extent(&found.coverage).unwrap();
@@ -344,7 +344,7 @@ fn a_wide_band_holds_every_motion_that_explains_the_measurements() {
     assert!(errors.worst < 1.5 && errors.largest[1] < 0.05, "{:?} {}", errors.largest, errors.worst);
 }
 
-/// A body whose first windows meet false minima under 1 mm of noise, each with a fit: all readings find the body, no window vetoes it, each stray is named, and the run does not pass.
+/// A body whose first windows meet false minima under 1 mm of noise, each with a fit: all measurements find the body, no window vetoes it, each stray is named, and the run does not pass.
 #[test]
 fn a_false_minimum_vetoes_nothing() {
     let shape = "shape = { kind = \"spline\", radii = [1.648, 1.752, 1.794], knots = \"uniform\" }";
@@ -360,7 +360,7 @@ fn a_false_minimum_vetoes_nothing() {
     let answers = experiment.run_with_shape(&NEVER, &|_| ()).unwrap();
     let track = &answers[0].track;
     let found = answers[0].reconstruction.as_ref().unwrap();
-    let whole = found.whole.as_ref().expect("all readings tell the motion");
+    let whole = found.whole.as_ref().expect("all measurements tell the motion");
     assert!(found.contradiction.is_none());
     let moments = &experiment.simulation.as_ref().unwrap().trajectory.moments;
     for (sample, moment) in whole.samples.iter().zip(moments) {

@@ -29,7 +29,7 @@ fn scene(equations: &str, start: &str, more: &str, seed: u64) -> (tempfile::Temp
     (folder, found)
 }
 
-/// The same readings, changed.
+/// The same measurements, changed.
 fn changed(mut experiment: Experiment, change: impl Fn(usize, f64, f64) -> f64) -> Experiment {
     let times = experiment.signals.times().to_vec();
     let values = experiment.signals.column(0).iter().zip(&times).enumerate();
@@ -101,7 +101,7 @@ fn hardened(time: f64) -> f64 {
     x
 }
 
-/// Five of a hundred readings far off pass by a robust loss, fifteen do not, and of least squares none are left out.
+/// Five of a hundred measurements far off pass by a robust loss, fifteen do not, and of least squares none are left out.
 #[test]
 fn a_tenth_of_the_readings_may_be_outliers() {
     let off = |every: usize| {

@@ -1,6 +1,6 @@
 //! What windows hand on, estimates over whole records, bounds, and a robust loss.
 //!
-//! Oracle: a point that moves at one speed, read with errors. The best line through all readings, its deviations and its residual are
+//! Oracle: a point that moves at one speed, read with errors. The best line through all measurements, its deviations and its residual are
 //! known in closed form (regression), whatever the windows.
 
 use crate::common::{folder, write};
@@ -27,7 +27,7 @@ fn point(more: &str) -> (tempfile::TempDir, palmistry::experiment::Experiment) {
     (folder, experiment(&scene))
 }
 
-/// The best line `a + b t` through some readings, and the standard deviations of `a` and `b`.
+/// The best line `a + b t` through some measurements, and the standard deviations of `a` and `b`.
 fn line(times: &[f64], values: &[f64]) -> ([f64; 2], [f64; 2]) {
     let n = times.len() as f64;
     let (t, x) = (times.iter().sum::<f64>() / n, values.iter().sum::<f64>() / n);
@@ -47,7 +47,7 @@ fn the_last_window_knows_what_all_readings_tell() {
     let values = experiment.signals.column(0);
     for (place, update) in track.updates.iter().enumerate() {
         assert_eq!((&update.end, update.is_heir), (&UpdateEnd::Converged, place > 0));
-        // all readings up to the end of this window
+        // all measurements up to the end of this window
         let rows = 40 * (place + 1) + 1;
         let shifted: Vec<f64> = times[..rows].iter().map(|time| time - update.from).collect();
         let (best, deviations) = line(&shifted, &values[..rows]);
@@ -56,7 +56,7 @@ fn the_last_window_knows_what_all_readings_tell() {
             assert!((update.deviations[i] / deviations[i] - 1.0).abs() < 1e-6, "{place} {i}");
         }
         let fit = update.fit.unwrap();
-        // a window has its own readings but the one it shares, and two relations in the place of that
+        // a window has its own measurements but the one it shares, and two relations in the place of that
         assert_eq!(fit.degrees, if place == 0 { 41 - 2 } else { 40 + 2 - 2 });
     }
     // where nothing is inherited each window stands alone
@@ -121,8 +121,8 @@ fn estimates_stay_within_bounds() {
     assert!(track.is_sound() && track.remarks.is_empty());
 }
 
-/// One reading in ten is two units off, forty deviations. Least squares say that nothing fits; with a robust loss the line is found, and
-/// the number of readings that count less is told.
+/// One measurement in ten is two units off, forty deviations. Least squares say that nothing fits; with a robust loss the line is found, and
+/// the number of measurements that count less is told.
 #[test]
 fn a_robust_loss_finds_the_line_among_outliers() {
     for (more, is_found) in [("whole = true\n", false), ("whole = true\nloss = \"huber\"\n", true)] {
@@ -143,7 +143,7 @@ fn a_robust_loss_finds_the_line_among_outliers() {
             assert!(update.fit.unwrap().chi_square < 201.0);
         }
     }
-    // of a model that is wrong nearly all readings lie beyond the corner: that is no outlier
+    // of a model that is wrong nearly all measurements lie beyond the corner: that is no outlier
     let (_folder, mut experiment) = point("whole = true\nloss = \"huber\"\n");
     let times = experiment.signals.times().to_vec();
     let bent = times.iter().map(|time| 3.0 * (2.0 * time).sin()).collect();
@@ -167,8 +167,11 @@ fn windows_that_do_not_see_grow() {
         deviations[1] < f64::max(0.1, best[1].abs() / 3.0)
     };
     let rows = (1..).map(|i| 2 * i + 1).find(|rows| sees(0..*rows)).unwrap();
-    let blind =
-        track.updates.iter().take_while(|update| matches!(update.end, UpdateEnd::Blind { .. })).count();
+    let blind = track
+        .updates
+        .iter()
+        .take_while(|update| matches!(update.end, UpdateEnd::Unobservable { .. }))
+        .count();
     assert_eq!(blind, (rows - 1) / 2 - 1, "{rows}");
     let first = &track.updates[blind];
     assert_eq!((first.from, first.to, &first.end), (0.0, times[rows - 1], &UpdateEnd::Converged));
@@ -192,10 +195,11 @@ fn windows_that_do_not_see_grow() {
     let alone = windows.observe(&alone);
     assert_eq!(alone.updates.len(), (times.len() - 1) / 2);
     for (place, update) in alone.updates.iter().enumerate() {
-        let is_blind = matches!(update.end, UpdateEnd::Blind { .. });
-        assert_eq!(is_blind, !sees(2 * place..2 * place + 3), "{update:?}");
+        let is_unobservable = matches!(update.end, UpdateEnd::Unobservable { .. });
+        assert_eq!(is_unobservable, !sees(2 * place..2 * place + 3), "{update:?}");
     }
-    let blind = alone.updates.iter().filter(|update| matches!(update.end, UpdateEnd::Blind { .. })).count();
+    let blind =
+        alone.updates.iter().filter(|update| matches!(update.end, UpdateEnd::Unobservable { .. })).count();
     assert!(20 * blind > 19 * alone.updates.len(), "{blind} of {}", alone.updates.len());
 }
 
@@ -205,10 +209,10 @@ fn windows_grow_to_a_bound() {
     let (_folder, experiment) = point("");
     let task = experiment.task(&NEVER).unwrap();
     // nothing is seen that is not known to a millionth of its size
-    let windows = MovingWindow { blind: 1e-6, ..MovingWindow::new(2) };
+    let windows = MovingWindow { unobservable_above: 1e-6, ..MovingWindow::new(2) };
     let track = windows.observe(&task);
     assert_eq!(track.updates.len(), 100);
-    assert!(track.updates.iter().all(|update| matches!(update.end, UpdateEnd::Blind { .. })));
+    assert!(track.updates.iter().all(|update| matches!(update.end, UpdateEnd::Unobservable { .. })));
     let told = track.remarks.iter().filter(|remark| remark.contains("8 windows together")).count();
     // the last of eight is the first of the next eight
     assert_eq!(told, (100 - 1) / 7, "{:?}", track.remarks);

@@ -24,7 +24,7 @@ fn entry(name: &str, mean: f64, harmonics: [[f64; 2]; 3]) -> String {
     format!("\n[[observer.library]]\nname = \"{name}\"\nshape = {shape}\n")
 }
 
-/// A scene of the thesis with 101 samples, one fast method, readings with errors of a tenth of a millimetre, and a library.
+/// A scene of the thesis with 101 samples, one fast method, measurements with errors of a tenth of a millimetre, and a library.
 fn scene(name: &str, library: &str) -> String {
     let own = text(name);
     let (head, _) = own.split_once("[observer]").unwrap();
@@ -123,7 +123,7 @@ fn a_body_that_is_not_there_is_none_of_them() {
     assert_eq!(recorded, from(&["observe", &whole, "--json"]));
 }
 
-/// Congruent bodies in frames that are turned against each other explain the same readings, at angles that differ by just that turn; nobody is taken. The mirror image of such a body is another one.
+/// Congruent bodies in frames that are turned against each other explain the same measurements, at angles that differ by just that turn; nobody is taken. The mirror image of such a body is another one.
 #[test]
 fn congruent_bodies_cannot_be_told_apart() {
     let both = [

@@ -1,6 +1,6 @@
 //! Story 4: can shape and motion be recovered from where the contacts lie?
 //!
-//! The motions come from `palmistry::mechanics`, which knows no equation of the thesis; the observers know only readings and
+//! The motions come from `palmistry::mechanics`, which knows no equation of the thesis; the observers know only measurements and
 //! the equations of `general.proof`. What is recovered is held against the body itself, never against another run.
 
 mod advice;

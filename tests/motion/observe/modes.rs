@@ -13,13 +13,13 @@ const FALL: &str = "system \"A point that falls\" state x, v param g unknown dri
 
 /// A point that moves on for 41 samples and then falls for 60; windows are of 20 steps.
 fn point(folder: &Path) -> String {
-    let mut readings = String::from("time,x\n");
+    let mut measurements = String::from("time,x\n");
     for i in 0..101 {
         let t = 0.05 * f64::from(i);
         let fallen = (t - 2.5).max(0.0);
-        readings += &format!("{t:?},{:?}\n", 1.0 + 0.5 * t - 9.81 * fallen * fallen / 2.0);
+        measurements += &format!("{t:?},{:?}\n", 1.0 + 0.5 * t - 9.81 * fallen * fallen / 2.0);
     }
-    for (name, text) in [("moves.proof", POINT), ("falls.proof", FALL), ("point.csv", &readings)] {
+    for (name, text) in [("moves.proof", POINT), ("falls.proof", FALL), ("point.csv", &measurements)] {
         std::fs::write(folder.join(name), text).unwrap();
     }
     let folder = folder.display();

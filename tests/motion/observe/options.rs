@@ -73,7 +73,7 @@ fn studies_run_where_there_is_a_truth_and_are_refused_where_not() {
         assert_eq!(basin["fraction"].as_f64(), Some(part));
         let expected = match basin["method"].as_str().unwrap() {
             "newton" | "trust-region" => part > 0.5,
-            // with no reading to correct it, only a guess that is right stays right
+            // with no measurement to correct it, only a guess that is right stays right
             "integration" => part == 0.0,
             _ => true,
         };

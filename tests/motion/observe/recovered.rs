@@ -126,7 +126,7 @@ fn a_turning_point_is_said_not_to_be_seen_and_is_integrated() {
     let track = &answer(&answers, Method::Newton).track;
     for update in &track.updates {
         let turns_here = update.from <= turns[0] && turns[0] <= update.to;
-        let unobserved = matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
+        let unobserved = matches!(update.end, UpdateEnd::Unobservable { .. } | UpdateEnd::Lost(_));
         assert_eq!(unobserved, turns_here, "{} to {}: {:?}", update.from, update.to, update.end);
         if turns_here {
             let inside = track.estimates.iter().filter(|m| update.from < m.time && m.time <= update.to);

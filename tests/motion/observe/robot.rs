@@ -51,7 +51,7 @@ fn what_the_closure_adds() {
     assert_eq!(ranks, [(8, 6, 6), (12, 10, 10), (4, 0, 1), (6, 0, 2)]);
     let gained: Vec<_> = closure.settings.iter().map(|own| own.gained()).collect();
     assert_eq!(gained, [vec![], vec![], vec!["v1"], vec!["lean"]]);
-    let left: Vec<_> = closure.settings.iter().map(|own| own.not_told()).collect();
+    let left: Vec<_> = closure.settings.iter().map(|own| own.unobservable()).collect();
     assert_eq!(left[..2], [vec!["x", "y"], vec!["x", "y"]]);
     assert_eq!(left[2..], [vec!["phi0", "x", "y"], vec!["v1", "phi0", "x", "y", "base"]]);
     let [known, unknown, ..] = &closure.settings[..] else { panic!("four settings") };

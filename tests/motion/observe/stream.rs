@@ -1,6 +1,6 @@
 //! Readings that arrive: real processes, pipes and signals.
 //!
-//! Oracles: the same readings from a file, and the operating system.
+//! Oracles: the same measurements from a file, and the operating system.
 
 use crate::common::{folder, palmistry, write};
 use crate::observe::observe;
@@ -28,11 +28,11 @@ fn spring(scene: &str) -> (tempfile::TempDir, PathBuf, String) {
     let scene = write(&folder, "spring.toml", scene);
     let output = palmistry(&["observe", scene.to_str().unwrap(), "--record", "-"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    let readings = String::from_utf8(output.stdout).unwrap();
-    // nothing but the readings is printed
-    assert_eq!(readings.lines().count(), 402);
-    assert!(readings.lines().skip(1).all(|line| line.split(',').all(|cell| cell.parse::<f64>().is_ok())));
-    (folder, scene, readings)
+    let measurements = String::from_utf8(output.stdout).unwrap();
+    // nothing but the measurements is printed
+    assert_eq!(measurements.lines().count(), 402);
+    assert!(measurements.lines().skip(1).all(|line| line.split(',').all(|cell| cell.parse::<f64>().is_ok())));
+    (folder, scene, measurements)
 }
 
 /// The program that listens.
@@ -73,8 +73,8 @@ fn end_of(mut child: Child, lines: &Receiver<Value>) -> (Vec<Value>, Option<i32>
     (left, status.code(), words)
 }
 
-fn rows(readings: &str, range: std::ops::Range<usize>) -> String {
-    readings.lines().skip(range.start).take(range.len()).map(|line| format!("{line}\n")).collect()
+fn rows(measurements: &str, range: std::ops::Range<usize>) -> String {
+    measurements.lines().skip(range.start).take(range.len()).map(|line| format!("{line}\n")).collect()
 }
 
 fn state(update: &Value, name: &str, what: &str) -> f64 {
@@ -83,7 +83,7 @@ fn state(update: &Value, name: &str, what: &str) -> f64 {
 
 #[test]
 fn what_is_piped_gives_what_a_file_gives() {
-    let (folder, scene, readings) = spring(SCENE);
+    let (folder, scene, measurements) = spring(SCENE);
     let line = "\"$0\" observe \"$1\" --record - | \"$0\" observe \"$1\" --data - --json";
     let output = Command::new("bash")
         .args(["-c", line, env!("CARGO_BIN_EXE_palmistry"), scene.to_str().unwrap()])
@@ -95,7 +95,7 @@ fn what_is_piped_gives_what_a_file_gives() {
     let (end, windows) = lines.split_last().unwrap();
     assert_eq!((end["ended"].as_str(), end["windows"].as_u64()), (Some("whole"), Some(5)), "{end}");
     assert_eq!(end["rows"].as_u64(), Some(401));
-    let file = write(&folder, "spring.csv", readings);
+    let file = write(&folder, "spring.csv", measurements);
     let (output, whole) = observe(&scene, &["--data", file.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(0), "{whole}");
     let updates = whole["observers"][0]["updates"].as_array().unwrap();
@@ -124,12 +124,12 @@ fn what_is_piped_gives_what_a_file_gives() {
 /// asked to stop keeps what it had.
 #[test]
 fn answers_arrive_before_the_stream_ends_and_stay_when_it_is_stopped() {
-    let (_folder, scene, readings) = spring(SCENE);
+    let (_folder, scene, measurements) = spring(SCENE);
     for name in ["INT", "TERM"] {
         let (mut child, lines) = listening(&scene);
         let mut input = child.stdin.take().unwrap();
         // cut in the middle of rows
-        for piece in rows(&readings, 0..110).as_bytes().chunks(999) {
+        for piece in rows(&measurements, 0..110).as_bytes().chunks(999) {
             input.write_all(piece).unwrap();
             input.flush().unwrap();
         }
@@ -159,9 +159,9 @@ fn answers_arrive_before_the_stream_ends_and_stay_when_it_is_stopped() {
 
 #[test]
 fn a_faulty_row_ends_a_stream_or_is_skipped() {
-    let (_folder, scene, readings) = spring(SCENE);
-    let row = readings.lines().nth(200).unwrap();
-    let broken = readings.replacen(row, &format!("{},abc", row.split(',').next().unwrap()), 1);
+    let (_folder, scene, measurements) = spring(SCENE);
+    let row = measurements.lines().nth(200).unwrap();
+    let broken = measurements.replacen(row, &format!("{},abc", row.split(',').next().unwrap()), 1);
     let (mut child, lines) = listening(&scene);
     child.stdin.take().unwrap().write_all(broken.as_bytes()).unwrap();
     let (left, status, words) = end_of(child, &lines);
@@ -193,9 +193,9 @@ fn a_faulty_row_ends_a_stream_or_is_skipped() {
 
 #[test]
 fn a_row_that_is_cut_off_is_none() {
-    let (_folder, scene, readings) = spring(SCENE);
+    let (_folder, scene, measurements) = spring(SCENE);
     for cut in ["4.0,0.12", "4.0,", "4."] {
-        let text = rows(&readings, 0..201) + cut;
+        let text = rows(&measurements, 0..201) + cut;
         let (mut child, lines) = listening(&scene);
         child.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
         let (left, status, words) = end_of(child, &lines);
@@ -209,7 +209,7 @@ fn a_row_that_is_cut_off_is_none() {
 
 #[test]
 fn nobody_listens_any_more() {
-    let (_folder, scene, readings) = spring(SCENE);
+    let (_folder, scene, measurements) = spring(SCENE);
     let line = "\"$0\" observe \"$1\" --data - --json | head -c 10 > /dev/null; exit ${PIPESTATUS[0]}";
     let mut child = Command::new("bash")
         .args(["-c", line, env!("CARGO_BIN_EXE_palmistry"), scene.to_str().unwrap()])
@@ -218,7 +218,7 @@ fn nobody_listens_any_more() {
         .spawn()
         .unwrap();
     let mut input = child.stdin.take().unwrap();
-    let _ = input.write_all(readings.as_bytes());
+    let _ = input.write_all(measurements.as_bytes());
     let mut time = 8.0;
     for _ in 0..20_000 {
         time += 0.02;
@@ -303,7 +303,7 @@ fn a_column_may_change_after_the_first_window() {
     let scene = "title = \"A cart\"\nmodel = \"cart.proof\"\nseed = 3\n[data]\nrecord = \"-\"\n[sensor]\nnoise = 0.001\n[observer]\n\
                  methods = [\"trust-region\", \"kalman\"]\nestimate = [\"x\", \"v\"]\nguess = { x = 0.1, v = 0.1 }\nwindow = 50\n";
     let scene = write(&folder, "cart.toml", scene);
-    // pushed evenly from the hundredth step on: x by hand; readings err by a wave below the noise
+    // pushed evenly from the hundredth step on: x by hand; measurements err by a wave below the noise
     let step = 0.01;
     let mut text = "time,x,u\n".to_owned();
     for i in 0..301 {
@@ -340,8 +340,8 @@ fn blind_windows_grow() {
     let file = folder.path().join("x.csv");
     let (_, whole) = observe(&scene, &["--record", file.to_str().unwrap()]);
     let (mut child, lines) = listening(&scene);
-    let readings = std::fs::read_to_string(&file).unwrap();
-    child.stdin.as_mut().unwrap().write_all(readings.as_bytes()).unwrap();
+    let measurements = std::fs::read_to_string(&file).unwrap();
+    child.stdin.as_mut().unwrap().write_all(measurements.as_bytes()).unwrap();
     let (told, status, words) = end_of(child, &lines);
     assert_eq!(status, Some(0), "{words}");
     assert_eq!((told.len(), told[50]["rows"].as_u64()), (51, Some(201)));
@@ -370,15 +370,15 @@ fn blind_windows_grow() {
 /// The innovations of a filter are those of the file, whatever the pieces; a step that the model does not know fails by them at the end.
 #[test]
 fn a_filter_alone_is_tested_at_the_end() {
-    let (folder, scene, readings) = spring(&SCENE.replace("\"trust-region\", \"kalman\"", "\"kalman\""));
-    let header = readings.lines().next().unwrap();
-    let stepped = readings.lines().skip(1).map(|row| {
+    let (folder, scene, measurements) = spring(&SCENE.replace("\"trust-region\", \"kalman\"", "\"kalman\""));
+    let header = measurements.lines().next().unwrap();
+    let stepped = measurements.lines().skip(1).map(|row| {
         let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
         format!("{:?},{:?}\n", cells[0], cells[1] + if cells[0] > 4.0 { 0.05 } else { 0.0 })
     });
     let stepped = format!("{header}\n{}", stepped.collect::<String>());
-    for (text, fits) in [(&readings, true), (&stepped, false)] {
-        let file = write(&folder, "readings.csv", text);
+    for (text, fits) in [(&measurements, true), (&stepped, false)] {
+        let file = write(&folder, "measurements.csv", text);
         let (output, whole) = observe(&scene, &["--data", file.to_str().unwrap()]);
         assert_eq!(output.status.code(), Some(i32::from(!fits)), "{whole}");
         let (mut child, lines) = listening(&scene);

@@ -1,6 +1,6 @@
 //! Several observers of one motion, of which the rank says who may answer.
 //!
-//! Oracles: a point whose place, poles and blind stretch are written down; a body between palms by Newton's laws, whose rate says when it turns with
+//! Oracles: a point whose place, poles and uninformative stretch are written down; a body between palms by Newton's laws, whose rate says when it turns with
 //! a palm.
 
 use crate::common::{folder, json, palmistry, write};
@@ -16,13 +16,13 @@ const DIVIDED: &str = "system \"By a quotient\" state s, v known b(t), c(t) drif
                        sample s in [-5, 5] v in [-5, 5] b in [-1, 1] c in [1, 2]";
 
 fn scene(folder: &Path, first: &str, switch: &str) -> String {
-    let mut readings = String::from("time,a,b,c,\"a*x\",\"c*s\"\n");
+    let mut measurements = String::from("time,a,b,c,\"a*x\",\"c*s\"\n");
     for i in 0..101 {
         let t = 0.05 * f64::from(i);
         let (x, a) = (1.0 + 0.5 * t, f64::from(u8::from(t < 3.99)));
-        readings += &format!("{t:?},{a:?},1.0,{:?},{:?},{x:?}\n", t - 2.53, a * x);
+        measurements += &format!("{t:?},{a:?},1.0,{:?},{:?},{x:?}\n", t - 2.53, a * x);
     }
-    for (name, text) in [("place.proof", PLAIN), ("quotient.proof", DIVIDED), ("point.csv", &readings)] {
+    for (name, text) in [("place.proof", PLAIN), ("quotient.proof", DIVIDED), ("point.csv", &measurements)] {
         std::fs::write(folder.join(name), text).unwrap();
     }
     let second = if first == "place" { "quotient" } else { "place" };
@@ -37,7 +37,7 @@ fn scene(folder: &Path, first: &str, switch: &str) -> String {
     )
 }
 
-/// In the order of the scene, but for the window in which the first has a pole or is blind; and the answer is the point's own, whoever gives it.
+/// In the order of the scene, but for the window in which the first has a pole or is uninformative; and the answer is the point's own, whoever gives it.
 #[test]
 fn the_rank_says_who_answers() {
     let folder = folder();

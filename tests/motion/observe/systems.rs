@@ -23,7 +23,7 @@ fn with_line(text: &str, begins: &str, line: &str) -> String {
 }
 
 /// From the middle of the sample box every state and constant is found: without noise to nine digits, as far as
-/// the bound for readings good to 1e-9 lets one tell them; with noise within five deviations, which one of two million passes.
+/// the bound for measurements good to 1e-9 lets one tell them; with noise within five deviations, which one of two million passes.
 #[test]
 fn multiple_shooting_arrives_from_the_middle_of_the_sample_box() {
     for name in SYSTEMS {

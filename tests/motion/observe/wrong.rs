@@ -1,4 +1,4 @@
-//! What is wrong with a model or with readings is noticed where the noise lets it, and is named where it does not.
+//! What is wrong with a model or with measurements is noticed where the noise lets it, and is named where it does not.
 
 use crate::observe::{NEVER, REGIMES, experiment, text};
 use palmistry::experiment::Experiment;
@@ -27,7 +27,7 @@ fn place(columns: &Columns, name: &str) -> usize {
     columns.iter().position(|(other, _)| other == name).unwrap()
 }
 
-/// The same experiment with other readings.
+/// The same experiment with other measurements.
 fn changed(mut experiment: Experiment, change: impl Fn(&mut Columns, &Signals)) -> Experiment {
     let mut columns = columns(&experiment.signals);
     change(&mut columns, &experiment.signals);
@@ -64,7 +64,7 @@ fn suspect<'a>(update: &'a Update, what: &str) -> &'a Suspect {
 
 type Wrong = (&'static str, fn(&mut Columns, &Signals));
 
-/// Readings that are no readings.
+/// Readings that are no measurements.
 const GROSS: [Wrong; 6] = [
     ("swapped", |columns, _| {
         let (a, b) = (place(columns, "s1"), place(columns, "s2"));
@@ -101,7 +101,7 @@ const GROSS: [Wrong; 6] = [
     }),
 ];
 
-/// A spring of which the model believes half of the stiffness: readings by the closed form, with noise.
+/// A spring of which the model believes half of the stiffness: measurements by the closed form, with noise.
 #[test]
 fn a_spring_twice_as_stiff_is_noticed() {
     let text =
@@ -120,8 +120,8 @@ fn a_spring_twice_as_stiff_is_noticed() {
             method: WindowSearch::TrustRegion,
             window: 80,
             steps: 50,
-            blind: 1.0,
-            when_blind: WhenUnobservable::Hold,
+            unobservable_above: 1.0,
+            when_unobservable: WhenUnobservable::Hold,
         };
         (task.exact, task.sigma, task.noise) = (false, NOISE, Noise::Stated { normal: NOISE, rounding: 0.0 });
         // v is zero at first: how well it is seen is measured against the greatest speed
@@ -137,7 +137,7 @@ fn a_spring_twice_as_stiff_is_noticed() {
 }
 
 #[test]
-fn readings_that_are_none_are_never_borne_out() {
+fn measurements_that_are_none_are_never_borne_out() {
     for name in REGIMES {
         for (what, change) in GROSS {
             let track = first(&changed(noisy(name, 1), change));

@@ -47,7 +47,7 @@ fn answers_are_those_of_the_commands() {
         let rank =
             lab.last(&json!({ "ask": "rank", "samples": 100, "text": text, "file": name }))["rank"].clone();
         let expected = json(&palmistry(&["rank", path, "--samples", "100", "--json"]));
-        for key in ["unknowns", "generic", "rank_histogram", "certified", "held_at_the_files_values"] {
+        for key in ["unknowns", "generic", "rank_histogram", "certified", "fixed_at_the_files_values"] {
             assert_eq!(rank[key], expected[key], "{name}: {key}");
         }
     }

@@ -27,7 +27,7 @@ pub struct Contact {
     pub world: Vector<2>,
     /// The contact in the body's frame.
     pub body: Vector<2>,
-    /// The distance from the origin along the palm, what the sensor reads: `s` of the thesis.
+    /// The distance from the origin along the palm, which the sensor measures: `s` of the thesis.
     pub s: Real,
     /// The projection of the contact, in the body's frame, on the outward normal there: `r` of the thesis.
     pub r: Real,

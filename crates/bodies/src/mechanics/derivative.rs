@@ -1,7 +1,7 @@
 //! First and second derivatives by differences.
 //!
 //! Central differences with the steps `h`, `h/2`, `h/4`, `h/8`, extrapolated to step zero (Richardson). With
-//! `h = 2^-32` the four steps leave an error of about `h^8/2^12 = 2^-268` times a ninth or tenth derivative
+//! `h = 2^-32` the four steps have an error of about `h^8/2^12 = 2^-268` times a ninth or tenth derivative
 //! over its factorial; rounding adds some `2^-320/(h/8)^2 = 2^-250` to a second derivative. The estimate that
 //! is handed out is more careful: the difference between the last two extrapolations, which is of the order
 //! `h^6`.

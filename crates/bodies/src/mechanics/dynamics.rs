@@ -31,10 +31,10 @@ pub struct PlanarDynamics {
     pub torques: [Real; 2],
 }
 
-/// The motion of a body that is turned by `phi0` and turns at the rate `omega0`, while the palms move as they
-/// are told.
+/// The motion of a body that is turned by `phi0` and turns at the rate `omega0`, while the palms move as
+/// prescribed.
 ///
-/// Contact with both palms leaves the body one degree of freedom, its orientation. The acceleration of the
+/// A body in contact with both palms has one degree of freedom, its orientation. The acceleration of the
 /// centre of mass is an affine function of the angular acceleration `a`, found by differencing the motions
 /// with `a = 0` and `a = 1`. Newton's law for the centre (two equations) and Euler's for the rotation then
 /// are three linear equations for `a` and the two contact forces. Each palm's torque follows from its own

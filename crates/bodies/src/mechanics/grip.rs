@@ -41,7 +41,7 @@ pub struct SolidContact {
     pub body: Vector<3>,
     /// The outward normal in the body's frame: `n_i`.
     pub outward: Vector<3>,
-    /// The contact in the palm's frame, what the sensor reads: `s_i`. The third component is zero.
+    /// The contact in the palm's frame, which the sensor measures: `s_i`. The third component is zero.
     pub sensed: Vector<3>,
 }
 

@@ -2,15 +2,15 @@
 //!
 //! A body is given by its support function: [`PlanarBody`] with a few harmonics, [`Solid`] as an ellipsoid or
 //! as a body that is none. It is laid on palms so that it touches them ([`place`], `grip`(grip())), which
-//! is a linear problem, and carried along while palms and body turn as they are told. What a sensor would
-//! read, and where the centre of mass goes, is then differentiated numerically in numbers of 320 bits
+//! is a linear problem, and carried along while palms and body turn as prescribed. What a sensor would
+//! measure, and where the centre of mass goes, is then differentiated numerically in numbers of 320 bits
 //! ([`differentiate`]): some seventy correct digits, of which the estimate vouches for more than forty.
 //! Newton's laws, written for the centre of mass and the rotation and solved as linear equations, give the
 //! accelerations, the contact forces and the palms' torques ([`planar_dynamics`], [`solid_dynamics`]); where
 //! nothing accelerates, the potential energy gives the pose ([`lowest_pose`], [`follow`], [`resting_pose`]; in double precision [`resting`]).
 //!
-//! What a published formula says of such a motion can then be held against the motion itself. For that to be
-//! worth something this floor has to stay ignorant: it imports numbers only, reads no proof file, and uses no
+//! What a published formula says of such a motion can then be compared with the motion itself. For that to be
+//! worth something this floor has to be independent: it imports numbers only, reads no proof file, and uses no
 //! formula of the thesis beyond the definitions of the frames and of what `s`, `r`, `d` and `e` mean. In
 //! particular it does not know that `r' = -d`, nor how `s` moves, nor Euler's equation.
 //!

@@ -1,4 +1,4 @@
-//! A planar body that is carried along by given angles, seen by differences.
+//! A planar body that is carried along by given angles, with derivatives by differences.
 
 use super::contact::{Angles, Placement};
 use super::curved::place_on;

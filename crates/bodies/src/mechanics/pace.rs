@@ -1,7 +1,7 @@
 //! How often a motion is looked at.
 
 /// Contacts are looked at after each step of the integrator, of which there are at least so many: a contact force
-/// that is negative for a shorter time than a step may go unseen.
+/// that is negative for a shorter time than a step may go unnoticed.
 const FEWEST_STEPS: f64 = 256.0;
 
 /// And there are at least so many in the time in which a body turns by one radian, or in which gravity moves it by its own size, however long the

@@ -1,7 +1,7 @@
 //! A palm by its own form: what a sensor's value means.
 //!
 //! A palm is a curve that begins at the joint. In its frame the first axis leaves the joint along the palm, the second one
-//! points to the side of the body; so palm 2, which stands on the body's other side, is palm 1 in a mirror. A sensor reads
+//! points to the side of the body; so palm 2, which stands on the body's other side, is palm 1 in a mirror. A sensor measures
 //! where the contact is, by arc length from the joint.
 
 use super::harmonics::SupportNumber;
@@ -67,7 +67,7 @@ impl<N: PalmNumber> Palm<N>
 where
     for<'a> &'a N: Add<&'a N, Output = N> + Sub<&'a N, Output = N> + Mul<&'a N, Output = N>,
 {
-    /// The palm where its sensor reads `s`, in m from the joint along the palm.
+    /// The palm where its sensor measures `s`, in m from the joint along the palm.
     pub fn at(&self, s: &N) -> PalmPoint<N> {
         let (zero, one) = (N::whole(0), N::whole(1));
         match self {

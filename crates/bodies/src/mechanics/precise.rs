@@ -1,10 +1,10 @@
 //! Numbers of [`BITS`] bits with the usual operators.
 //!
 //! A [`Real`] is a binary float of the crate dashu, rounded to nearest after each operation. It is no
-//! enclosure: how far a result can be trusted is estimated by who computed it (see [`super::differentiate`]),
-//! not proved. An operation that has no value (a division by zero, the root of a negative number) gives an
-//! undefined number, and whatever is computed from an undefined number is undefined: one look at the end,
-//! with [`Real::is_defined`], covers all steps.
+//! enclosure: how far a result can be trusted is estimated by whoever computed it (see
+//! [`super::differentiate`]), not proved. An operation that has no value (a division by zero, the root of a
+//! negative number) gives an undefined number, and whatever is computed from an undefined number is
+//! undefined: one look at the end, with [`Real::is_defined`], covers all steps.
 
 use dashu::base::Sign;
 use dashu::float::round::Rounding;

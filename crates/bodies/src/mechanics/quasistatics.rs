@@ -64,7 +64,7 @@ mod tests {
     use palmistry_math::number::parse_decimal;
 
     /// At the lowest pose the two contact forces that carry the weight exert no torque about the centre of
-    /// mass: statics, which the search for the least energy knows nothing of.
+    /// mass: statics, which the search for the least energy does not use.
     #[test]
     fn at_the_lowest_pose_forces_and_torques_balance() {
         let q = |text: &str| parse_decimal(text).unwrap();

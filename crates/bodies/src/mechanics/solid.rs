@@ -43,7 +43,7 @@ impl Solid {
     /// no more than twice its own.
     ///
     /// # Errors
-    /// Unless those bounds leave the radii of curvature positive and the centre of mass inside.
+    /// Unless those bounds keep the radii of curvature positive and the centre of mass inside.
     pub fn new(shape: &SolidShape) -> Result<Self, ShapeError> {
         let least = |values: &[RBig; 3]| values.iter().fold(values[0].clone(), |a, b| a.min(b.clone()));
         let greatest = |values: &[RBig; 3]| values.iter().fold(values[0].clone(), |a, b| a.max(b.clone()));

@@ -17,7 +17,7 @@ pub struct PalmSphere {
     pub touch: [Real; 2],
 }
 
-/// Half the step of differences, and what is left at the end, as powers of two.
+/// Half the step of differences, and the residual at the end, as powers of two.
 const STEP: isize = -100;
 const LEFT: isize = -290;
 const MOST_STEPS: usize = 40;

@@ -3,7 +3,7 @@
 //! The ground is a sum of waves. Both wheels are points of a rigid body and lie on it, so that the body has one degree of freedom: where wheel 1 is.
 //! Where it is at a time is an arc length; where wheel 2 is then, how the body stands, and all rates and accelerations follow from the two places by numbers
 //! that carry two derivatives by time through the search for wheel 2. Newton's law for the centre of mass and that for the rotation are three linear equations for the motor's pull and both normal forces.
-//! No rolling of wheel 2, no curvature and no equation 6.5 to 6.12 is in it: what the thesis says of them can be held against it.
+//! No rolling of wheel 2, no curvature and no equation 6.5 to 6.12 is in it: what the thesis says of them can be compared with it.
 //!
 //! Left out: wheels of a size, slipping, motions of which nobody holds wheel 1's speed. Where a wheel would have to be pulled to the ground the motion ends.
 
@@ -164,7 +164,7 @@ impl Robot {
         RobotDrive { moments, end: RobotEnd::Completed }
     }
 
-    /// With wheel 1 over `x`; wheel 2 is sought near `ahead` of it, and `ahead` becomes what was found.
+    /// With wheel 1 over `x`; wheel 2 is searched for near `ahead` of it, and `ahead` becomes what was found.
     fn moment(&self, ground: &Ground, speed: f64, time: f64, x: f64, ahead: &mut f64) -> Option<RobotMoment> {
         let slope = ground.at(x).1;
         let rate = speed / slope.hypot(1.0);

@@ -1,4 +1,4 @@
-//! A body in space that tumbles on three palms under gravity, seen by differences.
+//! A body in space that tumbles on three palms under gravity, with derivatives by differences.
 
 use super::grip::{Grip, grip, palm_frame, rotation};
 use super::linear::{
@@ -73,7 +73,7 @@ pub fn angular_velocity(turn: &MovingSquare) -> Vector<3> {
 }
 
 /// The rate of change of the angular velocity: the axis of `M'' Mᵀ`, whose symmetric part (the centripetal
-/// one) the axis does not see.
+/// one) does not affect the axis.
 pub fn angular_acceleration(turn: &MovingSquare) -> Vector<3> {
     axial(&product(&turn[2], &transposed(&turn[0])))
 }
@@ -164,7 +164,7 @@ impl SolidInertia {
 /// The motion of a body on three palms, with the accelerations of its three angles found from Newton's laws;
 /// those that `motion` names for the body are ignored.
 ///
-/// Contact leaves the body three degrees of freedom, its orientation. The accelerations of the centre of mass
+/// A body in contact has three degrees of freedom, its orientation. The accelerations of the centre of mass
 /// and of the rotation are affine functions of the accelerations of the three angles, found by differencing
 /// four motions. The laws for the momentum and the angular momentum are six linear equations for these and
 /// the three contact forces.

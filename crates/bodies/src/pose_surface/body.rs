@@ -46,7 +46,7 @@ pub fn numbers(text: &str) -> Result<Vec<f64>, BodyTextError> {
 }
 
 impl PoseBody {
-    /// A body by its outline and where its centre of mass is. An error is an outline that is no convex body.
+    /// A body by its outline and the place of its centre of mass; an error where the outline is no smooth convex body.
     pub fn new(form: BodyForm, centre: CentreOfMass) -> Result<PoseBody, FormError> {
         let shape = Shape::new(&form, centre)?.without_corners()?;
         Ok(PoseBody { form, shape })
@@ -117,7 +117,7 @@ impl PoseBody {
         &self.form
     }
 
-    /// The body in the words that [`PoseBody::parse`] reads; the centre of mass stands for itself.
+    /// The body as a text, for kinds that [`PoseBody::parse`] knows one that it accepts; the centre of mass is not in it.
     pub fn text(&self) -> String {
         let list = |values: &[f64]| values.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
         match &self.form {

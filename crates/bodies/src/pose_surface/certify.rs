@@ -3,8 +3,8 @@
 //! The triangle of palm angles at a margin is cut into squares. Over each the turn of `phi0` is cut into cells, on which `U'` has one sign, or `U''` has, or neither is
 //! known. A run of cells with `U'' > 0` between cells with `U' < 0` and `U' > 0` holds *exactly one stable pose for each pair of palm angles in the
 //! square*, which moves continuously with them: a certified sheet. Two sheets over squares with a common edge whose cells
-//! overlap are one: on the edge `U''` is positive over both, so `U'` vanishes once. What hangs together so hangs together for certain, and so does what a cycle
-//! adds up to. What is neither a sheet nor free of stable poses stays open; sheets that not even open cells join are apart for certain.
+//! overlap are one: on the edge `U''` is positive over both, so `U'` vanishes once. What is connected so is connected for certain, and certain is what a cycle
+//! adds up to. What is neither a sheet nor free of stable poses stays open; sheets that not even open cells join are separate for certain.
 
 use super::body::PoseBody;
 use super::enclosed::EnclosedTable;
@@ -92,7 +92,7 @@ struct Run {
 struct Known {
     square: Square,
     runs: Vec<Run>,
-    /// Whether all of it keeps the margin; the others only tell what cannot be.
+    /// Whether all of it keeps the margin; the others only serve to exclude.
     is_inside: bool,
 }
 

@@ -1,9 +1,9 @@
 //! The surface of stable poses over the pairs of normals that touch the palms.
 //!
 //! A pose is in balance where `A r'(a) + B r'(b) = 0` for the normals `a` at palm 1 and `b` at palm 2, `A` and `B` being positive. So `r'`
-//! has different signs at both (or vanishes at both), `phi2 = b - a - pi`, and `A/B = |r'(b)|/|r'(a)|` tells `phi1`: *each pair of such
+//! has different signs at both (or vanishes at both), `phi2 = b - a - pi`, and `A/B = |r'(b)|/|r'(a)|` determines `phi1`: *each pair of such
 //! normals has one pair of palms*. It is stable where `r''(a)/|r'(a)| + r''(b)/|r'(b)| > 0`. Between the extrema of `r` the surface is therefore a
-//! graph over rectangles, which hang together only at their corners: where both `r'` vanish each ratio will do, and the corner
+//! graph over rectangles, which are connected only at their corners: where both `r'` vanish each ratio will do, and the corner
 //! stands for a whole line of poses with the same contacts. Near a corner what matters is the ratio of both distances from it, so that
 //! nodes are laid evenly in the logarithm of the distance from either end.
 //!
@@ -175,7 +175,7 @@ impl ContactChart {
         self.stretches.first().map_or(0, |stretch| stretch.nodes.len())
     }
 
-    /// Both rectangles that meet in a corner hang together where the line of poses there has a part that is stable and far enough from
+    /// Both rectangles that meet in a corner are connected where the line of poses there has a part that is stable and far enough from
     /// parallel palms: along it `A/B` runs through an interval, and the poses are stable on one side of one ratio.
     fn join_at_corners(
         &self,
@@ -225,7 +225,7 @@ impl ContactChart {
 }
 
 /// Where the inside and the outside boundary meet as both palms close, 3.47: places along `a`, `b = a + pi` at which `r'(a)` and `r'(b)`
-/// have different signs and `r''(a)/|r'(a)| + r''(b)/|r'(b)|` vanishes, each at the ratio `c = phi1/phi2` that its `A/B` tells. For `A/B > 1` it is
+/// have different signs and `r''(a)/|r'(a)| + r''(b)/|r'(b)|` vanishes, each at the ratio `c = phi1/phi2` that its `A/B` determines. For `A/B > 1` it is
 /// the corner `phi1 = phi2 = 0`, and the same two normals with their palms exchanged are at the other corner; these are counted once.
 pub fn closing_folds(body: &PoseBody) -> Vec<ClosingFold> {
     let at = |angle: f64| {
@@ -259,7 +259,7 @@ pub struct ClosingFold {
     pub ratio: f64,
 }
 
-/// A pair of palms close to the fold: where it is when the palms are `phi2` apart.
+/// A pair of palms close to the fold: where it is when their angle is `phi2`.
 impl ClosingFold {
     /// The palms at a small `phi2`.
     pub fn palms(&self, phi2: f64) -> PalmPair {

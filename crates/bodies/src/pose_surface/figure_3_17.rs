@@ -1,8 +1,8 @@
-//! The thesis's own way to many stable poses with the same readings (figure 3.17), beside bodies that have them by their symmetry (`stable.rs`): poses that are turned and
+//! The thesis's own way to many stable poses with the same measurements (figure 3.17), beside bodies that have them by their symmetry (`stable.rs`): poses that are turned and
 //! lifted by different heights.
 
 use super::body::PoseBody;
-use super::potential::{PalmPair, potential, readings};
+use super::potential::{PalmPair, measurements, potential};
 use super::stable::stable_poses;
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
 use std::f64::consts::TAU;
@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 const POSES: usize = 3;
 const ORDER: usize = 8;
 
-/// The harmonics of a body that is nearly `1 + e cos 3 a`: at each of its three stable poses the radii and slopes at both contacts are those of the same readings in equilibrium, the
+/// The harmonics of a body that is nearly `1 + e cos 3 a`: at each of its three stable poses the radii and slopes at both contacts are those of the same measurements in equilibrium, the
 /// centre of mass lifted. Twelve linear equations for the coefficients, solved by the smallest harmonics.
 fn lifted(e: f64, palms: PalmPair, phi0: f64, lifts: [f64; POSES]) -> Vec<[f64; 2]> {
     let columns: Vec<(usize, bool)> = (0..=ORDER).flat_map(|k| [(k, false), (k, true)]).collect();
@@ -23,7 +23,7 @@ fn lifted(e: f64, palms: PalmPair, phi0: f64, lifts: [f64; POSES]) -> Vec<[f64; 
     let (a, b) = ((palms.phi1 + palms.phi2).sin(), palms.phi1.sin());
     let [first, second] = palms.normals(phi0).map(symmetric);
     let height = (a * first[0] + b * second[0]) / sine;
-    // both readings, the balance and the height by the radii and slopes at the contacts
+    // both measurements, the balance and the height by the radii and slopes at the contacts
     let by_contacts = Matrix4::from_row_slice(&[
         cosine / sine,
         1.0 / sine,
@@ -68,7 +68,7 @@ fn lifted(e: f64, palms: PalmPair, phi0: f64, lifts: [f64; POSES]) -> Vec<[f64; 
 }
 
 #[test]
-fn poses_that_are_lifted_have_the_same_readings() {
+fn poses_that_are_lifted_have_the_same_measurements() {
     let palms = PalmPair::new(0.6, 1.6);
     let e = 0.6 / 8.0;
     let symmetric = PoseBody::parse(&format!("harmonics:1,0,0,{e},0"), None).unwrap();
@@ -80,13 +80,13 @@ fn poses_that_are_lifted_have_the_same_readings() {
     let text = format!("harmonics:{},{}", harmonics[0][0], list.join(","));
     let body = PoseBody::parse(&text, Some([-harmonics[1][0], -harmonics[1][1]])).unwrap();
     let found = stable_poses(&body, palms);
-    let expected = readings(&symmetric, palms, first.phi0);
+    let expected = measurements(&symmetric, palms, first.phi0);
     for (place, lift) in lifts.into_iter().enumerate() {
         let phi0 = first.phi0 + TAU * place as f64 / POSES as f64;
         let off = |at: f64| (at - phi0).rem_euclid(TAU).min((phi0 - at).rem_euclid(TAU));
         let pose = found.iter().min_by(|a, b| off(a.phi0).total_cmp(&off(b.phi0))).unwrap();
         assert!(off(pose.phi0) < 1e-9 && pose.stiffness > 0.0, "{pose:?}");
-        let read = readings(&body, palms, phi0);
+        let read = measurements(&body, palms, phi0);
         assert!((read[0] - expected[0]).abs() + (read[1] - expected[1]).abs() < 1e-12, "{read:?}");
         assert!((potential(&body, palms, phi0)[0] - first.height - lift).abs() < 1e-12);
     }

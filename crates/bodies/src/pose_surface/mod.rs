@@ -31,7 +31,7 @@ pub use certify::{CertifiedComponent, SurfaceCertificate, certify_surface};
 pub use contact_chart::{ClosingFold, ContactChart, SurfaceComponent, closing_folds};
 pub use families::BodyFamily;
 pub use plan::{NoPlan, PlanGoal, PosePlan, finer_pose_plan, pose_plan};
-pub use potential::{PalmPair, potential, readings};
+pub use potential::{PalmPair, measurements, potential};
 pub use sheets::{GridPose, PoseGrid, PoseLimits};
 pub use slide::{PoseJump, Slide, path_length, plan_of_figure_3_14, slide};
 pub use stable::{StablePose, level_poses, stable_poses};

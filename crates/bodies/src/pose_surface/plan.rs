@@ -91,7 +91,7 @@ type Lifted = (usize, i32);
 /// Poses of the grid with their lifted orientations.
 type GridWay = Vec<(usize, f64)>;
 
-/// A shortest way over the lifted grid, as poses with their lifted orientations, to the first one that will do; or else all that was seen.
+/// A shortest way over the lifted grid, as poses with their lifted orientations, to the first one that will do; or else all orientations that were met.
 fn shortest(
     grid: &PoseGrid,
     starts: &[usize],
@@ -246,7 +246,8 @@ pub fn pose_plan(
 const FINER: [usize; 2] = [2, 4];
 const MOST_NODES: usize = 200;
 
-/// The same on finer grids, one after the other, where this one gives no plan: between its nodes a fold may be nearer than a step. What the finest says is told.
+/// The same on finer grids, one after the other, where this one gives no plan: between its nodes a fold may be nearer than a step. The answer of the finest is
+/// given.
 ///
 /// # Errors
 /// As for [`pose_plan`].
@@ -306,7 +307,7 @@ mod tests {
         assert!(plan.slide.jumps.is_empty() && plan.coverage >= 1.0 - 1e-9);
     }
 
-    /// From any orientation to any other; with a pad that is too short, or palms that may be off by half a radian, it is told that nothing is left.
+    /// From any orientation to any other; with a pad that is too short, or palms that may be off by half a radian, the error says that no pose is left.
     #[test]
     fn a_plan_turns_the_body_and_a_failure_says_why() {
         let body = egg();

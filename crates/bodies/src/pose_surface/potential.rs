@@ -60,7 +60,7 @@ pub fn potential(body: &PoseBody, palms: PalmPair, phi0: f64) -> [f64; 3] {
 }
 
 /// Where the contacts lie along the palms, `[s1, s2]` from the line in which the palms meet, in m.
-pub fn readings(body: &PoseBody, palms: PalmPair, phi0: f64) -> [f64; 2] {
+pub fn measurements(body: &PoseBody, palms: PalmPair, phi0: f64) -> [f64; 2] {
     let [[r1, slope1, _], [r2, slope2, _]] = palms.normals(phi0).map(|angle| body.support(angle));
     let (sine, cosine) = palms.phi2.sin_cos();
     // the centre of mass is r1 from palm 1, and as far along it as its distance from palm 2 says; the contact is r' from its foot
@@ -73,7 +73,7 @@ mod tests {
     use crate::pose_surface::body::tests::{egg, off_centre};
 
     /// The body itself laid down: both palms touch its outline and nothing of it is below either, the centre of mass is at the height
-    /// that the potential says, and the touching points lie where the readings say. The outline is all that is asked.
+    /// that the potential says, and the touching points lie where the measurements say. The outline is all that is asked.
     #[test]
     fn heights_and_readings_are_those_of_the_outline() {
         for body in [egg(), off_centre()] {
@@ -98,7 +98,7 @@ mod tests {
                     (normals[0][0] * right[1] - normals[1][0] * right[0]) / determinant,
                 ];
                 assert!((centre[1] - potential(&body, palms, phi0)[0]).abs() < 1e-8);
-                let found = readings(&body, palms, phi0);
+                let found = measurements(&body, palms, phi0);
                 for i in 0..2 {
                     let contact = [centre[0] + lowest[i][0], centre[1] + lowest[i][1]];
                     let angle = if i == 0 { phi1 } else { phi1 + phi2 };

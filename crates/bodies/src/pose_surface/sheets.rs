@@ -1,7 +1,7 @@
 //! The surface over a grid of palm angles: all stable poses at each node, and which poses of neighbouring nodes the body slides between. What pictures show and planners walk on.
 
 use super::body::PoseBody;
-use super::potential::{PalmPair, readings};
+use super::potential::{PalmPair, measurements};
 use super::slide::slide_straight;
 use super::stable::stable_poses;
 use std::f64::consts::{PI, TAU};
@@ -20,7 +20,7 @@ pub struct PoseLimits {
 impl PoseLimits {
     pub(super) fn allow(&self, body: &PoseBody, palms: PalmPair, phi0: f64) -> bool {
         let on_pad = self.pad.is_none_or(|[low, high]| {
-            readings(body, palms, phi0).into_iter().all(|reading| (low..=high).contains(&reading))
+            measurements(body, palms, phi0).into_iter().all(|reading| (low..=high).contains(&reading))
         });
         on_pad && palms.margin() >= self.margin - 1e-12
     }

@@ -224,7 +224,7 @@ mod tests {
                         jumps += 1;
                         let i = found.poses.iter().position(|pose| pose.1 == jump.orientation[1]).unwrap();
                         let before = found.poses[i - 1].0;
-                        // straight on, on either side of the fold, by as much as a square root needs to tell both poses apart
+                        // straight on, on either side of the fold, by as much as a square root needs to separate both poses
                         let way = before.distance(jump.palms).max(1e-12);
                         let on = |by: f64| jump.palms.toward(before, by / way);
                         let counts = [1e-4, -1e-4].map(|by| stable_poses(&body, on(by)).len());

@@ -127,12 +127,12 @@ mod tests {
         assert!((low[0].share - 1.0).abs() < 1e-12);
     }
 
-    /// Any number of stable poses with the same readings (figure 3.17), without its construction: `h = 1 + e cos k a` with `|e| < 1/(k^2 - 1)` is
-    /// convex and comes to itself after the `k`th part of a turn, so that each stable pose is one of `k` with the same palms and the same readings.
+    /// Any number of stable poses with the same measurements (figure 3.17), without its construction: `h = 1 + e cos k a` with `|e| < 1/(k^2 - 1)` is
+    /// convex and comes to itself after the `k`th part of a turn, so that each stable pose is one of `k` with the same palms and the same measurements.
     /// The centre of mass at the centroid is the middle. That `k` parts of a turn bring it to itself is exact: `cos(k a + 2 pi) = cos(k a)`.
     #[test]
-    fn any_number_of_poses_has_the_same_readings() {
-        use crate::pose_surface::potential::readings;
+    fn any_number_of_poses_has_the_same_measurements() {
+        use crate::pose_surface::potential::measurements;
         for k in 2..9_usize {
             let size = 0.9 / (k * k - 1) as f64;
             let zeros = "0,0,".repeat(k - 2);
@@ -144,7 +144,7 @@ mod tests {
                 for (i, pose) in found.iter().enumerate() {
                     let next = &found[(i + part) % found.len()];
                     assert!(((next.phi0 - pose.phi0).rem_euclid(TAU) - TAU / k as f64).abs() < 1e-9);
-                    let [one, other] = [pose, next].map(|pose| readings(&body, palms, pose.phi0));
+                    let [one, other] = [pose, next].map(|pose| measurements(&body, palms, pose.phi0));
                     assert!((one[0] - other[0]).abs() + (one[1] - other[1]).abs() < 1e-9);
                     assert!(pose.stiffness > 0.0);
                 }
@@ -154,7 +154,7 @@ mod tests {
         }
     }
 
-    /// The kernel by which bodies are moved, written apart from this one, finds the same poses.
+    /// The kernel by which bodies are moved, written independently of this one, finds the same poses.
     #[test]
     fn the_kernel_of_moving_bodies_finds_the_same() {
         use crate::mechanics::resting::stable_poses as by_kernel;

@@ -4,7 +4,7 @@ use super::body::PoseBody;
 use super::contact_chart::{ContactChart, SurfaceComponent, closing_folds};
 use super::families::BodyFamily;
 use super::plan::{NoPlan, PlanGoal, finer_pose_plan};
-use super::potential::readings;
+use super::potential::measurements;
 use super::sheets::{PoseGrid, PoseLimits};
 use super::slide::{Slide, plan_of_figure_3_14, slide};
 use super::stable::{level_poses, stable_poses};
@@ -12,22 +12,22 @@ use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What is asked.
+/// The question of a study of the conjecture.
 #[derive(Clone, Copy)]
 pub struct ConjectureQuestion<'a> {
-    /// Where random bodies begin.
+    /// The seed of random bodies.
     pub seed: u64,
     /// How many of each family.
     pub bodies: u64,
     /// Margins from parallel palms, rad.
     pub margins: &'a [f64],
-    /// Nodes between two extrema of the support function; the answer counts where as many again say the same.
+    /// Nodes between two extrema of the support function; the answer counts where twice as many agree.
     pub nodes: usize,
     /// Also plans that touch all normals, on a grid with so many nodes along a side, or on finer ones where it has none.
     pub plans: Option<(PoseLimits, usize)>,
-    /// Stop where it is set.
+    /// Stops the study when it is set.
     pub interrupt: &'a AtomicBool,
-    /// Told of each body as soon as it was looked at, in any order: a run that is cut off has these.
+    /// Called with each body as soon as it was examined, in any order: a run that is cut off has these.
     pub found: &'a (dyn Fn(&ConjectureFinding) + Sync),
 }
 
@@ -57,7 +57,7 @@ pub struct ConjectureFinding {
     pub family: BodyFamily,
     /// Its number under the seed.
     pub number: u64,
-    /// The body, in words.
+    /// The body, as text.
     pub body: String,
     /// Its centre of mass in the frame of its form, m.
     pub centre: [f64; 2],
@@ -77,15 +77,16 @@ pub struct PlanFinding {
     /// Its length in rad, or why there is none.
     pub length: Result<f64, NoPlan>,
     /// The farthest place on a palm that it needs, in mean radii.
-    pub reading: Option<f64>,
+    pub measurement: Option<f64>,
     /// The part of all normals that one and two rounds of plan 3.14 touch, from the lowest pose at their start, and the jumps on the way.
     pub rounds: [(f64, usize); 2],
     /// The farthest place on a palm that a round needs, in mean radii.
-    pub round_reading: f64,
+    pub round_measurement: f64,
 }
 
-fn farthest_reading(body: &PoseBody, run: &Slide) -> f64 {
-    let most = run.poses.iter().flat_map(|(palms, phi0)| readings(body, *palms, *phi0)).fold(0.0, f64::max);
+fn farthest_measurement(body: &PoseBody, run: &Slide) -> f64 {
+    let most =
+        run.poses.iter().flat_map(|(palms, phi0)| measurements(body, *palms, *phi0)).fold(0.0, f64::max);
     most / body.mean_radius()
 }
 
@@ -101,9 +102,9 @@ fn plan_finding(body: &PoseBody, limits: &PoseLimits, side: usize) -> PlanFindin
     };
     let runs = [round(1), round(2)];
     PlanFinding {
-        reading: plan.as_ref().ok().map(|plan| farthest_reading(body, &plan.slide)),
+        measurement: plan.as_ref().ok().map(|plan| farthest_measurement(body, &plan.slide)),
         length: plan.map(|plan| plan.length),
-        round_reading: farthest_reading(body, &runs[0]),
+        round_measurement: farthest_measurement(body, &runs[0]),
         rounds: runs.map(|run| (run.coverage(), run.jumps.len())),
     }
 }

@@ -10,7 +10,7 @@ use super::slide::{Slide, plan_of_figure_3_14, slide};
 use super::stable::{StablePose, level_poses, stable_poses};
 use std::sync::atomic::AtomicBool;
 
-/// Nodes between two extrema of the support function, of the chart that tells components.
+/// Nodes between two extrema of the support function, of the chart for the components.
 pub const CHART_NODES: usize = 240;
 
 /// What is asked of a body.
@@ -20,7 +20,7 @@ pub struct PoseQuestion<'a> {
     pub palms: PalmPair,
     /// What plans keep.
     pub limits: PoseLimits,
-    /// Margins at which components are told, rad.
+    /// Margins at which components are computed, rad.
     pub margins: &'a [f64],
     /// From which orientation to which one the body is to be turned, rad.
     pub turn: Option<[f64; 2]>,
@@ -28,7 +28,7 @@ pub struct PoseQuestion<'a> {
     pub levels: u32,
     /// Nodes along a side of the grid of plans and pictures; plans are looked for on finer ones where it has none.
     pub side: usize,
-    /// Stop where it is set.
+    /// Stops the survey when it is set.
     pub interrupt: &'a AtomicBool,
 }
 

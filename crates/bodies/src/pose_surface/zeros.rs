@@ -1,4 +1,4 @@
-//! Zeros of a periodic function that is given with its derivative: those between samples, and pairs of them that no sample tells.
+//! Zeros of a periodic function that is given with its derivative: those between samples, and pairs of them that no sample shows.
 
 use std::f64::consts::TAU;
 

@@ -10,7 +10,7 @@ const DEPTH: u32 = 44;
 /// A lower bound on a piece is good enough that is no less than this part of the value in its middle.
 const TIGHT: f64 = 0.95;
 
-/// Pieces of a turn at the beginning, for each harmonic.
+/// Pieces of a turn at the start, for each harmonic.
 const PIECES: u32 = 4;
 
 /// What is known of the sign of `r + r''`.
@@ -28,7 +28,7 @@ pub enum Convexity {
         /// The value there, in m, or one that is nearer to zero.
         value: f64,
     },
-    /// It is too near to zero at this normal to be told.
+    /// It is too near to zero at this normal to be decided.
     Undecided {
         /// The angle of the normal.
         angle: f64,
@@ -39,7 +39,7 @@ pub enum Convexity {
 /// form on pieces of a turn that are halved until it is decided there.
 pub fn convexity(series: &SupportSeries) -> Convexity {
     let pieces = PIECES * (series.order() as u32 + 1);
-    // a turn and a little more: rounding leaves no normal out
+    // a turn and a little more: rounding omits no normal
     let step = TAU * (1.0 + 1e-9) / f64::from(pieces);
     let mut open: Vec<(Interval, u32)> = (0..pieces)
         .map(|i| (Interval::new(step * f64::from(i), (step * f64::from(i + 1)).next_up()), 0))

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 /// The normals that were touched, as parts of a turn.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Coverage {
-    /// From where to where, in rad: increasing, apart, the first end in `[0, 2 pi)`. One that goes past a turn ends beyond it.
+    /// From where to where, in rad: increasing, disjoint, the first end in `[0, 2 pi)`. One that goes past a turn ends beyond it.
     pub touched: Vec<[f64; 2]>,
 }
 

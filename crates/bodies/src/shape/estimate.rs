@@ -24,7 +24,7 @@ pub struct ShapeEstimate {
     pub others: Vec<(f64, ShapeEstimate)>,
     /// How many samples it was made of.
     pub samples: usize,
-    /// The sum of the squares of what is left, in units of the samples' variances.
+    /// The sum of the squared residuals, in units of the samples' variances.
     pub chi_square: f64,
     /// Samples less unknowns; at least one.
     pub degrees: usize,
@@ -32,8 +32,8 @@ pub struct ShapeEstimate {
     pub widened: f64,
 }
 
-/// The standard deviation of a linear form in numbers with a covariance. What is told of the touched part is a small difference of what is not told of the gaps: the rounding of these is counted, and a
-/// variance of which it leaves no digit is not zero.
+/// The standard deviation of a linear form in numbers with a covariance. The small variance of the touched part is a difference of the large ones of the gaps:
+/// their rounding is counted, and a variance of which no digit remains is not zero.
 pub fn deviation_of(covariance: &DMatrix<f64>, form: &[f64]) -> f64 {
     let (mut variance, mut rounded) = (0.0, 0.0);
     for (column, factor) in covariance.column_iter().zip(form) {
@@ -46,7 +46,7 @@ pub fn deviation_of(covariance: &DMatrix<f64>, form: &[f64]) -> f64 {
     (variance.max(0.0) + f64::EPSILON * rounded).sqrt()
 }
 
-/// Of normal errors one in a thousand leaves a band that has all normals at once in it.
+/// The quantile that one normal error in a thousand exceeds, for a band that holds at all normals at once.
 const ONE_IN_A_THOUSAND: f64 = 3.090_232_306_167_813;
 
 /// Pieces of a turn for each harmonic, where the band of the radius of curvature is first looked at.
@@ -64,9 +64,9 @@ impl ShapeEstimate {
         self.deviation_of(angle, |basis| basis[0])
     }
 
-    /// Half the width of the band about the support radius at a normal, in m. Where it was touched it is two standard deviations. In a gap no sample tells which harmonics
-    /// there are, and the band is what convexity alone leaves: the body reaches at least as far as its contacts at the gap's ends, and no farther than the corner at which the tangents there
-    /// meet; infinite where these do not meet, in a gap of half a turn and more.
+    /// Half the width of the band about the support radius at a normal, in m. Where it was touched it is two standard deviations. In a gap no sample determines
+    /// which harmonics there are, and the band follows from convexity alone: the body reaches at least as far as its contacts at the gap's ends, and no farther
+    /// than the corner at which the tangents there meet; infinite where these do not meet, in a gap of half a turn and more.
     pub fn band(&self, coverage: &Coverage, angle: f64) -> f64 {
         let own = 2.0 * self.deviation(angle);
         if coverage.contains(angle) {

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 /// Steps of an arc that was touched, for a whole turn.
 const STEPS: f64 = 2880.0;
 
-/// The nodes of Gauss and Legendre's rule with two of them, about the middle of a step in parts of it; what it leaves of a sum.
+/// The nodes of Gauss and Legendre's rule with two of them, about the middle of a step, relative to it; the error of a sum, relative to it.
 const NODE: f64 = 0.288_675_134_594_812_9;
 const ROUNDED: f64 = 1e-11;
 

@@ -4,8 +4,8 @@
 //!
 //! `r + r''` is not negative, so that none of its Fourier coefficients is larger than twice its mean, which is that of `r`: a body of the mean radius
 //! `a_0` has `|a_k|, |b_k| <= 2 a_0/(k^2 - 1)`, and `<= 2 a_0` for `k = 1`, since its point of reference lies inside. The fit takes these bounds for standard
-//! deviations of the coefficients about zero. That is all the regularisation there is. Where normals were touched it moves nothing that the samples tell; where they were not, it keeps
-//! the deviations of the coefficients finite. What the band is in a gap says [`ShapeEstimate::band`], without it.
+//! deviations of the coefficients about zero. That is all the regularisation there is. Where normals were touched it changes nothing that the samples
+//! determine; where they were not, it keeps the deviations of the coefficients finite. The band in a gap, [`ShapeEstimate::band`], does without it.
 
 use super::{ShapeEstimate, SupportSeries};
 use nalgebra::{DMatrix, DVector};
@@ -26,14 +26,14 @@ pub struct SupportSample {
 pub enum SupportWeights {
     /// Inverse variances. Where the residual is larger than they explain the covariance grows with it; it never shrinks.
     InverseVariances,
-    /// Known up to a factor, which the residual tells.
+    /// Known up to a factor, which follows from the residual.
     Relative,
 }
 
 /// The orders that are tried where none is given, the last harmonic of each.
 pub const ORDERS: [usize; 15] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48];
 
-/// The variance of samples of unknown worth at first, in parts of the square of the mean radius; and the least that is believed of that in the end.
+/// The variance of samples of unknown worth at first, relative to the square of the mean radius; and the least that is believed of that in the end.
 const UNHEARD: f64 = 1e-12;
 const EXACT: f64 = 1e-14;
 
@@ -53,9 +53,9 @@ pub fn convex_deviation(mean: f64, k: usize) -> f64 {
 }
 
 /// The support function that explains samples best, with its covariance. Samples without a positive finite weight do not count. None where none does, or they
-/// tell no positive mean radius.
+/// determine no positive mean radius.
 ///
-/// The order is the one given, or else the one of [`ORDERS`] with the least criterion of G. Schwarz (1978): harmonics too small to be told are
+/// The order is the one given, or else the one of [`ORDERS`] with the least criterion of G. Schwarz (1978): harmonics too small to be significant are
 /// left out, and their part is not in the band.
 ///
 /// ```
@@ -111,7 +111,7 @@ pub fn fit_support(
     let found = match weights {
         SupportWeights::InverseVariances => best(1.0)?,
         SupportWeights::Relative => {
-            // convexity as good as unheard at first: the samples have to tell their own size
+            // convexity with nearly no weight at first: the samples have to determine their own size
             let size = UNHEARD * mean * mean * total / samples.len() as f64;
             let first = best(1.0 / size)?;
             let variance = first.cost * size / first.degrees() as f64;
@@ -242,7 +242,7 @@ mod tests {
     }
 
     /// Over 200 draws the error over the band's deviation has the mean square one within five of its own deviations; so have area and
-    /// perimeter. The order is sought, and is seldom another than the true one.
+    /// perimeter. The order is estimated, and is seldom another than the true one.
     #[test]
     fn errors_are_what_the_band_says() {
         let mut random = ChaCha8Rng::seed_from_u64(2);
@@ -276,7 +276,7 @@ mod tests {
         }
     }
 
-    /// Samples without error: the body itself, to rounding; and the band where nothing was touched is as wide as convexity leaves it.
+    /// Samples without error: the body itself, to rounding; and the band where nothing was touched is as wide as convexity allows.
     #[test]
     fn what_is_exact_stays_exact_and_what_is_untouched_is_wide() {
         let mut random = ChaCha8Rng::seed_from_u64(3);

@@ -1,6 +1,6 @@
 //! The support function of a closed cubic spline through a few points, and its derivatives by the points and by the steps of the spline's parameter.
 //!
-//! Its third derivative jumps where two pieces meet: no short series follows it there, and a few points tell it exactly.
+//! Its third derivative jumps where two pieces meet: no short series follows it there, and a few points determine it exactly.
 
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
@@ -26,7 +26,7 @@ const PARTS: u32 = 16;
 #[derive(Clone, Debug, PartialEq)]
 pub struct SupportSpline {
     points: Vec<Plane>,
-    /// The logarithms of the parameter's steps in parts of the first one, from the second on.
+    /// The logarithms of the parameter's steps relative to the first one, from the second on.
     ratios: Vec<f64>,
     pieces: Vec<Cubic>,
     /// The derivatives of the pieces by the coordinates of the points, then by the ratios.
@@ -294,7 +294,8 @@ impl SupportSpline {
         sums
     }
 
-    /// The least of `x' × x''`, a quadratic polynomial on each piece, in parts of the sizes that it is made of, and where it is: positive where the curve turns to the left everywhere.
+    /// The least of `x' × x''`, a quadratic polynomial on each piece, relative to the sizes that it is made of, and where it is: positive where the curve turns
+    /// to the left everywhere.
     pub(super) fn least_turning(&self) -> (f64, f64) {
         let size = |c: Plane| c[0].hypot(c[1]);
         let mut least = (f64::INFINITY, 0.0);

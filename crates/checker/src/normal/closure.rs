@@ -24,7 +24,7 @@ pub struct MovingField {
     pub known_slopes: Vec<RowPlaces>,
 }
 
-/// What is asked of a system at almost all states at which conditions hold, no field leaving them.
+/// A question about a system at almost all states at which conditions hold; no field leaves the set of these.
 #[derive(Clone, Copy, Debug)]
 pub struct Closed<'l> {
     /// The listing, the conditions and the requirements; no sides.

@@ -1,4 +1,4 @@
-//! Equations that follow from others: conditions are solved, part by part of the set on which they hold, and what is left is divided out.
+//! Equations that follow from others: conditions are solved, part by part of the set on which they hold, and the rest is divided out.
 
 use super::super::claim::ListedClaim;
 use super::super::doubt::{Effort, Missing};

@@ -64,7 +64,7 @@ impl Normal<'_> {
                         found
                     }
                 };
-                // an angle that is held is no free symbol any more
+                // an angle that is fixed is no free symbol any more
                 self.set(there);
                 let is_free = on_it.is_some_and(|on_it| !on_it.is_zero() && self.is_free(&on_it));
                 self.set(part.clone());

@@ -109,7 +109,7 @@ impl IntegerPolynomial {
         }
     }
 
-    /// What all terms have in common, the sign of the last term among it, and what is left: the greatest common divisor of the coefficients and of the monomials.
+    /// The common content of all terms, with the sign of the last one, and the rest: the greatest common divisor of the coefficients and of the monomials.
     pub fn content(mut self) -> (IBig, Monomial, IntegerPolynomial) {
         let Some((monomial, value)) = self.0.last() else {
             return (IBig::ZERO, Monomial::default(), self);
@@ -168,7 +168,8 @@ impl IntegerPolynomial {
         parts.into_iter().map(|(exponent, sum)| (exponent, sum.finish())).collect()
     }
 
-    /// What is left when multiples of some polynomials are taken off, as long as the greatest monomial of one divides the greatest that is left; up to a factor that is a number.
+    /// The remainder when multiples of some polynomials are subtracted, as long as the greatest monomial of one divides the greatest
+    /// that remains; up to a factor that is a number.
     ///
     /// # Errors
     /// Where it takes too much work.
@@ -185,7 +186,7 @@ impl IntegerPolynomial {
             let found = ends.iter().find_map(|(by, end)| Some((by, end, monomial.over(&end.0)?)));
             let Some((by, end, factor)) = found else {
                 left.add(monomial, value);
-                // what cannot be divided is enough to know that something is left
+                // what cannot be divided is enough to know that the remainder is not zero
                 break;
             };
             effort.spend((4 * by.0.len() + rest.len()) as u64)?;
@@ -367,7 +368,7 @@ impl Relations {
     }
 }
 
-/// The largest square that divides a positive number, by its root, and the primes that are left; of a number with a large factor that factor stands for a prime.
+/// The largest square that divides a positive number, by its root, and the primes that remain; of a number with a large factor that factor stands for a prime.
 pub fn square_part(value: &UBig) -> (UBig, Vec<UBig>) {
     let (mut root, mut primes, mut rest) = (UBig::ONE, Vec::new(), value.clone());
     let mut divisor = 2u32;

@@ -1,4 +1,4 @@
-//! Quotients of products of polynomials: factors stay apart, so that what cancels is seen without a greatest common divisor.
+//! Quotients of products of polynomials: factors stay separate, so that they cancel without a greatest common divisor.
 
 use super::super::doubt::{Effort, Missing};
 use super::polynomial::{IntegerPolynomial, Relations, Sum};
@@ -33,7 +33,7 @@ impl Quotient {
 /// No power of a factor is greater.
 const LARGEST_POWER: i32 = 1 << 12;
 
-/// Where quotients are reckoned with: variables with their relations, and the factors that were met.
+/// The arithmetic of quotients: variables with their relations, and the factors that were met.
 #[derive(Debug)]
 pub struct QuotientField<'e> {
     pub relations: Relations,
@@ -75,7 +75,7 @@ impl<'e> QuotientField<'e> {
         number
     }
 
-    /// A polynomial, its content and the powers of variables that divide it apart.
+    /// A polynomial, its content and the powers of variables that divide it separated.
     pub fn quotient(&mut self, polynomial: IntegerPolynomial) -> Quotient {
         if let Some(number) = polynomial.number() {
             return Quotient::from(RBig::from(number));
@@ -252,7 +252,7 @@ impl<'e> QuotientField<'e> {
         };
         for below in of_sign(&quotient, -1) {
             if self.factor(below).terms().len() < 2 {
-                // powers of variables are apart already
+                // powers of variables are separate already
                 continue;
             }
             for above in of_sign(&quotient, 1) {
@@ -264,7 +264,7 @@ impl<'e> QuotientField<'e> {
                     let Some(divided) = divided else { break };
                     let mut by = self.quotient(divided);
                     by.powers.entry(below).and_modify(|power| *power += 1).or_insert(1);
-                    // one power of the factor above becomes the factor below times what is left
+                    // one power of the factor above becomes the factor below times the rest
                     let mut rest = quotient.clone();
                     let power = rest.powers.entry(above).or_default();
                     *power -= 1;

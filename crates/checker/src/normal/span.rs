@@ -56,7 +56,7 @@ impl Normal<'_> {
         Ok(echelon.rows.len() == asked.rank)
     }
 
-    /// What is left of a row when multiples of those in echelon form are taken off.
+    /// The rest of a row when multiples of those in echelon form are subtracted.
     pub(super) fn reduced(
         &mut self,
         echelon: &Echelon,

@@ -83,7 +83,7 @@ impl Normal<'_> {
         variables.into_iter().any(|variable| matches!(self.atom_of(variable), Some(Atom::Turns(_))))
     }
 
-    /// The symbols of which only sine and cosine are given.
+    /// The symbols for which only sine and cosine are given.
     fn held<'s>(&'s self, part: &'s Part) -> impl Iterator<Item = &'s String> {
         let variables = part.angles.iter().flat_map(|(term, _)| term.0.powers());
         variables.filter_map(|(variable, _)| match self.atom_of(*variable) {

@@ -1,4 +1,5 @@
-//! Fields that keep a system: affine ones that change no output and commute with all fields that move the states. What they move no output of any experiment tells
+//! Fields that keep a system: affine ones that change no output and commute with all fields that move the states. A function that
+//! changes along one is not observable from any experiment
 //! (*Lie symmetries*: J. Yates, N. Evans and M. Chappell, *Structural identifiability analysis via symmetries of differential equations*, Automatica 45, 2009).
 //!
 //! The equations for the coefficients of such a field are linear, and each monomial of what has to vanish is one of them: what solves them is proved by that.
@@ -23,9 +24,9 @@ pub struct KeptFields<'l> {
     pub constant: &'l [RowPlaces],
     /// The fields.
     pub fields: &'l [MovingField],
-    /// How many of them there have to be, independent at almost all states; nothing where that is not asked.
+    /// How many of them there have to be, independent at almost all states; `None` where that is not asked.
     pub dimension: Option<usize>,
-    /// Differentials that all of them leave alone.
+    /// Differentials that all of them leave unchanged.
     pub inside: &'l [RowPlaces],
     /// Differentials each of which is changed by one of them.
     pub outside: &'l [RowPlaces],

@@ -1,4 +1,4 @@
-//! Equations that hold and such that do not, and generic ranks, decided by normal forms alone; random ones are held against evaluation at states.
+//! Equations that hold and such that do not, and generic ranks, decided by normal forms alone; random ones are compared with evaluation at states.
 
 use super::super::bound_span::{Asked, is_shown, pole_is_shown};
 use super::super::checking::Checking;
@@ -176,8 +176,9 @@ fn is_shown_generic(head: &str, claim: &str) -> bool {
         Subject::Matrix { claimed, .. } | Subject::System { claimed } => Some(*claimed),
         _ => None,
     };
-    let is_seen = claim.starts_with("observable");
-    is_shown(&mut system, &built, Asked { rank, given: None, is_generic: false, is_seen }, with).unwrap()
+    let is_observable = claim.starts_with("observable");
+    is_shown(&mut system, &built, Asked { rank, given: None, is_generic: false, is_observable }, with)
+        .unwrap()
 }
 
 #[test]
@@ -197,7 +198,7 @@ fn generic_ranks_are_shown_and_wrong_ones_are_not() {
         (STATES, "rank([x, y]) = 1 where x*y = 0", true),
         (STATES, "rank([x, x*y]) = 1 where x*y = 0", false),
         (STATES, "rank([x, x*y]) = 0 where x*y = 0", false),
-        // closed inequalities may leave one state alone
+        // closed inequalities may admit one state alone
         (STATES, "rank([x]) = 1 where x >= 0, x <= 0", false),
         // a set without states, which no equation says
         (STATES, "rank([x, y; 2*x, 2*y]) = 1 where x > 1, y > x", true),

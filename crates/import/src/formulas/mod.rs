@@ -22,7 +22,7 @@ use palmistry_lang::{Code, Problem};
 use pieces::{TIME, differentiated, is_equation, symbol, vector};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What the text does not say of itself.
+/// Roles of names that the text does not give.
 #[derive(Clone, Debug, Default)]
 pub struct PrintedRoles {
     /// The states in the order of a vector of rates.

@@ -69,11 +69,11 @@ pub struct ImportedProblem {
     pub scene: String,
     /// The measurements, as CSV.
     pub measurements: String,
-    /// How many states, parameters that are sought, outputs, experiments and measurements there are.
+    /// The numbers of states, estimated parameters, outputs, experiments and measurements.
     pub counts: [usize; 5],
     /// What is called otherwise: foreign names and ours.
     pub renamed: Vec<(String, String)>,
-    /// What is worth knowing.
+    /// Remarks for the user.
     pub remarks: Vec<String>,
 }
 

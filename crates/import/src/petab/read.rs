@@ -101,7 +101,7 @@ impl Reading<'_> {
                     if matches!(column.as_str(), "conditionId" | "conditionName" | "") {
                         continue;
                     }
-                    // an empty cell of a state leaves it as it is
+                    // an empty cell of a state keeps its value
                     let Some(cell) = row.at(at).filter(|cell| !cell.eq_ignore_ascii_case("nan")) else {
                         continue;
                     };

@@ -45,7 +45,7 @@ fn inline(pairs: &[(String, String)]) -> String {
 }
 
 impl Reading<'_> {
-    /// The experiments: conditions, each with the one that was held before where there is one, in the order in which they are first measured.
+    /// The experiments: conditions, each with its preequilibration condition where there is one, in the order in which they are first measured.
     pub(super) fn experiments(&self) -> Vec<(String, Option<&str>, &str)> {
         let mut found: Vec<(String, Option<&str>, &str)> = Vec::new();
         for one in &self.measurements {

@@ -18,7 +18,7 @@ pub(super) struct Species {
     concentration: Option<RBig>,
     /// Whether its symbol is an amount, and no concentration.
     is_amount: bool,
-    /// Whether reactions leave it as it is.
+    /// Whether reactions do not change it.
     is_held: bool,
     factor: Option<String>,
     span: Span,
@@ -39,7 +39,7 @@ impl Species {
         })
     }
 
-    /// Its value at the beginning, as its symbol means it, where the file says so.
+    /// Its initial value, as its symbol means it, where the file says so.
     pub fn beginning(&self, size: Option<&RBig>) -> Option<RBig> {
         let size = size.filter(|size| **size != RBig::ZERO);
         match (self.is_amount, &self.amount, &self.concentration) {

@@ -22,7 +22,7 @@ use xml::{child, document, elements, is, listed, place, required, says};
 /// A model with the values of its states at the start.
 pub(super) struct Started {
     pub model: ForeignModel,
-    /// By state, where the file says so: a formula of constants, definitions and the starts of other states. That of time is zero.
+    /// By state, where the file says so: a formula of constants, definitions and the initial values of other states. That of time is zero.
     pub starts: Vec<(String, ForeignExpr)>,
 }
 
@@ -150,7 +150,7 @@ struct Reading<'b> {
     parameters: Vec<(String, Option<RBig>)>,
     /// In the order of the file.
     rules: Vec<(String, Rule)>,
-    beginnings: Vec<(String, ForeignExpr)>,
+    initial_values: Vec<(String, ForeignExpr)>,
     reactions: Vec<Reaction>,
     index: Index,
 }
@@ -242,14 +242,14 @@ impl<'b> Reading<'b> {
             species,
             parameters,
             rules: Vec::new(),
-            beginnings: Vec::new(),
+            initial_values: Vec::new(),
             reactions: Vec::new(),
         };
         reading.read_rules(model)?;
         reading.read_beginnings(model)?;
         if is_level_3 {
             // a size may come from a rule as well
-            let begun: BTreeSet<&str> = reading.beginnings.iter().map(|(id, _)| id.as_str()).collect();
+            let begun: BTreeSet<&str> = reading.initial_values.iter().map(|(id, _)| id.as_str()).collect();
             for one in &mut reading.compartments {
                 let has_size = reading.index.rules.contains_key(&one.id) || begun.contains(one.id.as_str());
                 one.is_point &= !has_size;
@@ -278,7 +278,7 @@ impl<'b> Reading<'b> {
         for (id, value) in sizes.chain(parameters) {
             starts.extend(value.clone().map(|value| (id.clone(), number(value))));
         }
-        starts.extend(self.beginnings.iter().cloned());
+        starts.extend(self.initial_values.iter().cloned());
         starts
     }
 
@@ -340,7 +340,7 @@ impl<'b> Reading<'b> {
                 .help("assignments to stoichiometries are not read; write the number into the reaction"));
             }
             let value = self.math(node)?;
-            self.beginnings.push((symbol, value));
+            self.initial_values.push((symbol, value));
         }
         Ok(())
     }
@@ -390,7 +390,7 @@ impl<'b> Reading<'b> {
         Ok(model)
     }
 
-    /// What does not change: sizes, species that are held, parameters.
+    /// What does not change: sizes, constant species, parameters.
     fn add_constants(&self, model: &mut ForeignModel) -> Result<(), Problem> {
         let moved: BTreeSet<String> = model.states.iter().map(|state| state.name.clone()).collect();
         let ruled = |id: &str| self.rule(id).is_some() || moved.contains(id);
@@ -425,7 +425,7 @@ impl<'b> Reading<'b> {
         let mut states_begin = false;
         let mut moving = BTreeMap::new();
         let mut assigned = BTreeSet::new();
-        for (id, value) in &self.beginnings {
+        for (id, value) in &self.initial_values {
             if moved.contains(id) {
                 states_begin = true;
                 continue;

@@ -1,4 +1,4 @@
-//! From words to syntax, with the precedences of each language: `-x^2` is the same in all of them, `2^3^2` is not.
+//! From tokens to syntax, with the precedences of each language: `-x^2` is the same in all of them, `2^3^2` is not.
 
 mod lists;
 
@@ -16,7 +16,7 @@ enum Bracket {
     Curly,
 }
 
-/// Reads syntax from words.
+/// Reads syntax from tokens.
 pub(crate) struct Parser<'a> {
     tokens: &'a [Token],
     at: usize,
@@ -32,34 +32,34 @@ fn joined(kind: SyntaxKind, begin: &Span, end: usize) -> Syntax {
 }
 
 impl<'a> Parser<'a> {
-    /// A parser of words, of which the last one is the end.
+    /// A parser of tokens, of which the last one is the end.
     pub fn new(tokens: &'a [Token], dialect: Dialect) -> Parser<'a> {
         Parser { tokens, at: 0, dialect, open: Vec::new(), depth: 0 }
     }
 
-    /// The next word.
+    /// The next token.
     pub fn peek(&self) -> &'a Token {
         &self.tokens[self.at.min(self.tokens.len() - 1)]
     }
 
-    /// A word further on.
+    /// A token further on.
     pub fn ahead(&self, by: usize) -> &'a Token {
         &self.tokens[(self.at + by).min(self.tokens.len() - 1)]
     }
 
-    /// Takes the next word.
+    /// Takes the next token.
     pub fn next(&mut self) -> &'a Token {
         let token = self.peek();
         self.at += 1;
         token
     }
 
-    /// How many words were taken.
+    /// How many tokens were taken.
     pub fn position(&self) -> usize {
         self.at
     }
 
-    /// Goes to a word.
+    /// Goes to a token.
     pub fn go_to(&mut self, position: usize) {
         self.at = position;
     }
@@ -68,7 +68,7 @@ impl<'a> Parser<'a> {
         self.peek().kind == TokenKind::End
     }
 
-    /// Takes a sign if it is the next word.
+    /// Takes a sign if it is the next token.
     pub fn take(&mut self, sign: &str) -> bool {
         let found = self.peek().is(sign);
         self.at += usize::from(found);
@@ -95,7 +95,7 @@ impl<'a> Parser<'a> {
         .help("this is as far as the file was understood")
     }
 
-    /// Whether an expression ends before a word because a line does.
+    /// Whether an expression ends before a token because a line does.
     fn line_ends(&self, token: &Token) -> bool {
         token.newline
             && matches!(

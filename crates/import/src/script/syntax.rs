@@ -24,7 +24,7 @@ pub(crate) enum SyntaxKind {
     /// `<`, `<=`, `>`, `>=`, `==` or `!=` of two.
     Compare(&'static str, Box<Syntax>, Box<Syntax>),
     Not(Box<Syntax>),
-    /// A condition, what is so where it holds, and where not.
+    /// A condition, the value where it holds, and the value elsewhere.
     Choice(Box<Syntax>, Box<Syntax>, Box<Syntax>),
     Call(Box<Syntax>, Vec<Syntax>),
     Member(Box<Syntax>, String),

@@ -1,4 +1,4 @@
-//! Foreign text in words: numbers, names, texts and signs; comments kept aside.
+//! Foreign text as tokens: numbers, names, texts and signs; comments kept aside.
 
 use super::super::expression::Span;
 use palmistry_io::foreign::Budget;
@@ -25,7 +25,7 @@ pub(crate) enum TokenKind {
     End,
 }
 
-/// A word of the text.
+/// A token of the text.
 #[derive(Clone, Debug)]
 pub(crate) struct Token {
     pub kind: TokenKind,
@@ -60,10 +60,10 @@ const SIGNS: [&str; 47] = [
 /// Comments with the places where they begin.
 pub(crate) type Comments = Vec<(usize, String)>;
 
-/// The words of a text, each a node of the budget, and its comments with their places.
+/// The tokens of a text, each a node of the budget, and its comments with their places.
 ///
 /// # Errors
-/// A character that begins nothing, a text that does not end, or too many words.
+/// A character that begins nothing, a text that does not end, or too many tokens.
 pub(crate) fn tokens(
     text: &str,
     dialect: Dialect,

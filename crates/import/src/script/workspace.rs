@@ -110,7 +110,7 @@ impl<'b> ScriptWorkspace<'b> {
         }
     }
 
-    /// Binds a name to what could not be read: that is told where somebody needs it.
+    /// Binds a name to an error: it is reported only where the name is used.
     pub fn break_name(&mut self, name: &str, why: Problem) {
         self.rebind(name, Err((why.span, why.message, why.help)));
     }
@@ -268,7 +268,7 @@ impl<'b> ScriptWorkspace<'b> {
     fn call(&mut self, syntax: &Syntax) -> Valued {
         let span = &syntax.span;
         let Some((name, arguments)) = named_function(syntax) else { return self.function_of_time(syntax) };
-        // why something is not there is told where somebody needs it
+        // why something is not there is reported where it is used
         if let Some(Err(why)) = self.get(name) {
             return Err(why);
         }

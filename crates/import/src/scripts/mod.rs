@@ -305,7 +305,7 @@ impl Script<'_> {
                 }
             }
             (Err(why), names) => {
-                // told where somebody needs it: many files compute what no model uses
+                // reported where it is used: many files compute what no model uses
                 for name in names {
                     let why = Problem {
                         help: why.help.clone(),
@@ -404,21 +404,21 @@ impl Script<'_> {
                 .remarks
                 .push("'u' is not among what the file saves, so it is no input of the model".to_owned());
         }
-        self.beginnings(&mut model);
+        self.initial_values(&mut model);
         Ok(model)
     }
 
-    /// States whose beginning is known: the programs use them only where they are told to, so they stand in a comment.
-    fn beginnings(&self, model: &mut ForeignModel) {
+    /// States with a known initial condition: the programs use them only on request, so they stand in a comment.
+    fn initial_values(&self, model: &mut ForeignModel) {
         let Ok(Some(known)) = self.vector("known_ics") else { return };
         let values = self.vector("ics").ok().flatten().unwrap_or_default();
         for (at, (state, flag)) in model.states.iter().zip(known).enumerate() {
             if flag.as_number().is_some_and(|flag| *flag != RBig::ZERO) {
                 let value = values.get(at).filter(|value| value.as_number().is_some()).cloned();
-                model.beginnings.push((state.name.clone(), value));
+                model.initial_values.push((state.name.clone(), value));
             }
         }
-        if !model.beginnings.is_empty() {
+        if !model.initial_values.is_empty() {
             let remark = "known initial conditions stand at the end of the file as comments: the program uses them only where it is asked to";
             model.remarks.push(remark.to_owned());
         }

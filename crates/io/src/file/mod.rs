@@ -1,4 +1,4 @@
-//! Files. What is read is bounded, and a pipe that nobody writes to is told; what is written is whole or not
+//! Files. What is read is bounded, and a pipe that nobody writes to is an error; what is written is whole or not
 //! there; and standard output is a file like others, so that a write to it that fails is an error.
 //!
 //! This floor knows nothing of what stands in a file.

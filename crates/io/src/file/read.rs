@@ -8,7 +8,7 @@ use std::time::Instant;
 /// Why a file could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadFailure {
-    /// The system says no, in its words.
+    /// An error of the system, in its own words.
     #[error("{0}")]
     System(#[from] std::io::Error),
     /// It is a folder.

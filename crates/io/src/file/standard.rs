@@ -2,7 +2,7 @@
 //!
 //! Rust's own `print!` and `eprint!` panic where a stream cannot be written, and its standard output takes a closed one
 //! for an empty one. A program whose results are lost has to say so: here a write to standard output that fails is an
-//! error, and one to standard error is not, since nobody could be told.
+//! error, and one to standard error is not, since nowhere is left to report it.
 
 use crate::foreign::terminal;
 use std::fs::File;
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 static CLOSED: AtomicBool = AtomicBool::new(false);
 
 /// Looks whether standard output is open. It has to be called before Rust's runtime begins, which puts the null device
-/// in the place of a stream that is closed: what is written to that is lost without a word.
+/// in the place of a stream that is closed: what is written to that is lost without a message.
 pub fn look_at_standard_output() {
     #[cfg(unix)]
     if rustix::io::fcntl_getfd(rustix::stdio::stdout()).is_err() {

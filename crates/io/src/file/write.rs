@@ -18,7 +18,7 @@ const MOST_LINKS: usize = 40;
 /// Writes a file, or what has its name; `-` is standard output. Its folder is made where it is missing.
 ///
 /// # Errors
-/// What the system says; the file is then as it was, and nothing is left beside it.
+/// An error of the system; the file is then as it was, and no temporary file remains beside it.
 pub fn write_whole(path: &Path, fill: impl FnOnce(&mut (dyn Write + Send)) -> Result<()>) -> Result<()> {
     if path == Path::new("-") {
         return through(standard::output()?, fill);

@@ -4,7 +4,7 @@ use super::text::{is_hidden, push_escaped};
 use serde_json::Value;
 use std::borrow::Cow;
 
-/// The length of a sequence at the beginning of a text that only sets a colour or a weight, as this program writes them: `ESC [`,
+/// The length of a sequence at the start of a text that only sets a colour or a weight, as this program writes them: `ESC [`,
 /// numbers between semicolons, `m`. What conceals text, or blinks, is none.
 fn colour_length(text: &str) -> Option<usize> {
     let rest = text.strip_prefix("\u{1b}[")?;
@@ -24,7 +24,7 @@ fn colour_length(text: &str) -> Option<usize> {
     own.then_some(2 + end + 1)
 }
 
-/// A whole text for a terminal: its lines and colours stay, everything else that is not seen by itself is written in letters.
+/// A whole text for a terminal: its lines and colours stay, every other invisible character is escaped.
 pub fn terminal(text: &str) -> Cow<'_, str> {
     if !text.contains(|c| is_hidden(c) && c != '\n') {
         return text.into();
@@ -49,8 +49,8 @@ pub fn terminal(text: &str) -> Cow<'_, str> {
     out.into()
 }
 
-/// An object as JSON, indented or in one line; what is not seen by itself stands in it as `\uXXXX`, so that a terminal shows it and a
-/// reader of JSON has it as it was.
+/// An object as JSON, indented or in one line; invisible characters are written as `\uXXXX`, so that a terminal shows them and a
+/// reader of JSON restores them.
 pub fn json_text(object: &Value, indented: bool) -> String {
     let text = if indented { serde_json::to_string_pretty(object) } else { serde_json::to_string(object) };
     let text = text.unwrap_or_default();

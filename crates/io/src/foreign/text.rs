@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-/// Whether a character is not seen by itself, or changes how others are seen: controls, ends of lines, marks of the direction of
+/// Whether a character is invisible, or changes how others are displayed: controls, ends of lines, marks of the direction of
 /// writing, blanks without a width, tags (Unicode's general categories Cc, Cf, Zl and Zp, and fillers that are shown as nothing).
 pub(super) fn is_hidden(c: char) -> bool {
     c.is_control()
@@ -13,7 +13,7 @@ pub(super) fn is_hidden(c: char) -> bool {
             | '\u{6dd}' | '\u{70f}' | '\u{fff9}'..='\u{fffb}' | '\u{1d173}'..='\u{1d17a}' | '\u{e0000}'..='\u{e0fff}')
 }
 
-/// A foreign text in one line in which everything is seen: what is not seen by itself is written as in Rust and JSON, `\n` or
+/// A foreign text in one line in which everything is visible: invisible characters are escaped as in Rust and JSON, `\n` or
 /// `\u{1b}`.
 pub fn shown(text: &str) -> Cow<'_, str> {
     if !text.contains(is_hidden) {

@@ -55,7 +55,7 @@ mod tests {
         Ok(found.iter().map(|(name, _)| name.parse().unwrap()).collect())
     }
 
-    /// What each case is, is plain to see.
+    /// Each case can be checked by eye.
     #[test]
     fn gaps_and_overlaps_are_named() {
         assert_eq!(order(&[4..6, 0..4, 6..9], 9), Ok(vec![1, 0, 2]));

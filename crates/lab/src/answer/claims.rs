@@ -1,4 +1,4 @@
-//! The verdicts of claims, each told as soon as it is there.
+//! The verdicts of claims, each sent as soon as it is there.
 
 use super::place::Place;
 use super::{Refused, Tell};
@@ -9,7 +9,7 @@ use palmistry_report::{Colour, Layout, claim_json, claim_text, formula_mathml_in
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
-/// The width of what is told in letters.
+/// The width of a claim's text, in characters.
 const COLUMNS: usize = 80;
 
 pub(super) fn claims(

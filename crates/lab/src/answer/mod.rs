@@ -86,12 +86,12 @@ enum Ask {
     Model { model: PathBuf },
 }
 
-/// As of all commands.
+/// The default seed, that of all commands.
 fn first_seed() -> u64 {
     1
 }
 
-/// What stands in the way of an answer, in words.
+/// Why there is no answer, as text.
 #[derive(Debug)]
 pub(crate) struct Refused {
     message: String,
@@ -117,8 +117,8 @@ impl From<palmistry_lang::ReadError> for Refused {
     }
 }
 
-/// Answers a question, which is a text in JSON, in values that are to be lines. Files are read in `folder` alone, and written in `work`
-/// alone, a folder that is for this question.
+/// Answers a question (a text in JSON) with JSON values, each of which becomes one line. It reads files in `folder` alone, and writes them
+/// in `work` alone, a folder made for this question.
 pub fn answer(question: &str, folder: Option<&Path>, work: &Path, tell: &(dyn Fn(Value) + Sync)) {
     let last = match serde_json::from_str(question) {
         Err(why) => Err(Refused::new(format!("this is no question: {why}"))),

@@ -7,7 +7,7 @@ use palmistry_workbench::paper::MANIFEST;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// A file may say at its head what it is: so many characters of that are told.
+/// The comment at the head of a file may say what it is: so many characters of it are given.
 const MOST_WORDS: usize = 300;
 
 /// All of them: papers with their proof files and scenes.

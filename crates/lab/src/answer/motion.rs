@@ -18,12 +18,12 @@ use std::collections::{BTreeMap, HashMap};
 const MOST_SAMPLES: usize = 5000;
 /// Steps along an unobservable field, of Runge and Kutta's fourth order.
 const STEPS: usize = 400;
-/// An output that is smaller than the largest one by this factor is what the integration leaves.
+/// An output smaller than the largest one by this factor is an error of the integration.
 const NOTHING: f64 = 1e-12;
 
 #[derive(Deserialize)]
 pub(super) struct MotionAsked {
-    /// States at the beginning, and parameters that are others than in the file.
+    /// Initial conditions of states, and parameters with other values than in the file.
     start: BTreeMap<String, f64>,
     /// Functions of the time `t` by the names of signals, and of input fields.
     #[serde(default)]
@@ -77,8 +77,8 @@ fn told(found: &Response) -> Value {
     })
 }
 
-/// The greatest difference of an output over its own size: a small output is not lost beside a large one. One that is zero but for what the
-/// integration leaves has no size.
+/// The greatest difference of an output over its own size: a small output is not lost beside a large one. An output that is zero up to the
+/// error of the integration has no size.
 fn difference(first: &Response, second: &Response) -> f64 {
     let size = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let least = NOTHING * first.outputs.iter().fold(0.0, |most: f64, (_, values)| most.max(size(values)));
@@ -95,7 +95,7 @@ fn difference(first: &Response, second: &Response) -> f64 {
 
 /// The unobservable directions that are known as vector fields.
 fn unobservable(system: &mut System) -> Result<Vec<UnobservableField>, Refused> {
-    // where nothing is to be told of a rank there is a motion all the same
+    // where no rank can be computed there is a motion all the same
     let question = RankQuestion { samples: 0, ..RankQuestion::default() };
     let Ok(answer) = answer_rank(system, &question) else { return Ok(Vec::new()) };
     let [branch] = answer.branches.as_slice() else { return Ok(Vec::new()) };

@@ -93,7 +93,7 @@ impl Bounds {
         let referred = outline.references.iter().filter_map(|reference| reference.file.as_deref());
         for name in imported.chain(referred) {
             let path = file.parent().unwrap_or(Path::new("")).join(name);
-            // what is not there is told by the reader, at its place
+            // a file that does not exist is reported by the reader, at its place
             let Some(within) = self.within(&path, name)? else { continue };
             if named.contains_key(&within) {
                 continue;
@@ -114,7 +114,7 @@ impl Bounds {
             return Ok(found.map(|path| PathBuf::from(path.to_string_lossy().replacen(PACKED, "", 1))));
         }
         let Some(folder) = &self.folder else { return Err(out()) };
-        // whether a file is there is not told of other folders either
+        // nor is it revealed whether a file exists in another folder
         let lexical = lexical(path);
         if !lexical.starts_with(folder) {
             return Err(out());

@@ -290,7 +290,7 @@ pub(super) fn fit(files: &BTreeMap<String, String>, work: &Path) -> Result<Value
     Ok(json!({ "observed": found, "has_page": keep_page(&work.join("page"), work) }))
 }
 
-/// Writes the files, and tells which of them is to be imported.
+/// Writes the files, and returns which of them is to be imported.
 fn main_of(files: &BTreeMap<String, String>, work: &Path) -> Result<String, Refused> {
     let mut names = Vec::new();
     for (name, text) in files {

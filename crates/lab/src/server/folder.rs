@@ -92,8 +92,8 @@ fn read(folder: &Path, name: &str) -> Result<String, String> {
     palmistry_io::file::read_text(&path, LONGEST).map_err(|why| format!("{name} cannot be read: {why}"))
 }
 
-/// Writes a file whole, or leaves the old one. What stands there has to be what the page knows of it, nothing where it knows of none:
-/// somebody else may have written.
+/// Writes a file whole, or keeps the old one. The file has to be as the page last read it, or absent where the page knows of none:
+/// somebody else may have written it.
 fn save(folder: &Path, name: &str, text: &str, was: Option<&str>) -> Result<(), String> {
     let path = inside(folder, name)?;
     let is = if path.exists() { Some(read(folder, name)?) } else { None };

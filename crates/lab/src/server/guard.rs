@@ -22,7 +22,8 @@ pub enum Access {
 #[derive(Clone)]
 pub struct Secrets {
     token: String,
-    /// Buys the token, once: an address that a browser is started with is seen by all who list the processes of this machine.
+    /// Is exchanged for the token, once: everyone who lists the processes of this machine can read the address that a browser
+    /// is started with.
     code: Arc<Mutex<Option<String>>>,
 }
 
@@ -73,7 +74,7 @@ impl Access {
     }
 }
 
-/// Whether two secrets are one; sums are compared, so that the time tells nothing of the letters.
+/// Whether two secrets are equal; hashes are compared, so that the time taken reveals nothing of the letters.
 fn is_same(one: &str, other: &str) -> bool {
     Sha256::digest(one) == Sha256::digest(other)
 }
@@ -216,7 +217,7 @@ mod tests {
             Err(Refusal::Origin)
         );
         assert!(!format!("{access:?}").contains("secret"));
-        // the code buys the token once
+        // the code is exchanged for the token once
         assert!(access.address_once(own).ends_with("?code=once"));
         assert_eq!(access.token_for("Once"), None);
         assert_eq!(access.token_for("once").as_deref(), Some("secret"));

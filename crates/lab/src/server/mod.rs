@@ -20,17 +20,17 @@ use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio::sync::Semaphore;
 
-/// How often it is looked whether to stop.
+/// How often the server checks whether to stop.
 const PAUSE: Duration = Duration::from_millis(50);
-/// Whoever has not asked anything after this is no longer waited for.
+/// A client that has asked nothing after this is no longer waited for.
 const HEAD: Duration = Duration::from_secs(15);
 
 /// What a question may take.
 #[derive(Clone, Copy, Debug)]
 pub struct QuestionLimits {
-    /// The time of a question whose answer is waited for while one writes.
+    /// The time limit of a question that the page asks while the user writes.
     pub cheap: Duration,
-    /// The time of one that somebody asked by a button.
+    /// The time limit of one that the user asks by a button.
     pub dear: Duration,
     /// Memory of its process, in bytes.
     pub memory: u64,
@@ -59,7 +59,7 @@ pub struct LabOptions {
     pub program: (PathBuf, Vec<String>),
 }
 
-/// Why there is no lab.
+/// Why the lab does not start.
 #[derive(Debug)]
 pub enum LabError {
     /// The address cannot be listened on.

@@ -61,7 +61,7 @@ pub(super) struct Pages {
 }
 
 impl Pages {
-    /// Keeps a page, and tells its name. The oldest ones go.
+    /// Keeps a page and returns its name. The oldest ones are dropped.
     pub fn keep(&self, page: String) -> String {
         let name = random_name();
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);

@@ -176,7 +176,7 @@ impl Router {
     }
 }
 
-/// The words of the language, for who colours it.
+/// The words of the language, for syntax highlighting.
 fn words() -> Value {
     json!({
         "entries": vocabulary::ENTRIES,

@@ -70,7 +70,7 @@ impl Gates {
     }
 }
 
-/// The leave to work.
+/// Permission to work.
 pub(super) struct Turn {
     _client: OwnedSemaphorePermit,
     _all: OwnedSemaphorePermit,

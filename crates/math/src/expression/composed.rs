@@ -77,7 +77,7 @@ impl Graph {
         self.add(distance, x)
     }
 
-    /// The angle at which the point `(x, y)` is seen from the origin, between minus and plus pi.
+    /// The angle of the point `(x, y)` from the positive `x` axis, between minus and plus pi.
     pub fn angle_of_point(&mut self, y: NodeId, x: NodeId) -> NodeId {
         let divisor = self.half_angle_divisor(y, x);
         let tangent = self.div(y, divisor);

@@ -37,7 +37,7 @@ pub struct Derivation {
     stepped: Vec<(Symbol, Symbol)>,
 }
 
-/// How much a derivation knows, to come back to.
+/// How much a derivation has computed, to return to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KnownSoFar {
     derivatives: usize,
@@ -126,7 +126,7 @@ impl Derivation {
         self.known[&root]
     }
 
-    /// How much is known, to come back to.
+    /// How much has been computed, to return to.
     pub fn known_so_far(&self) -> KnownSoFar {
         KnownSoFar { derivatives: self.found.len(), steps: self.stepped.len() }
     }

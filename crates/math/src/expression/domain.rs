@@ -1,4 +1,4 @@
-//! Where a term has a value: what is divided by, and what roots, logarithms and inverse sines are taken of.
+//! Where a term has a value: divisors, and the arguments of roots, logarithms and inverse sines.
 //!
 //! The graph simplifies as it is built, and what it simplifies may have a value where the term as it was written has none:
 //! `0*log(x)` becomes zero, `1/(1/x)` becomes `x`. So whoever reads a term keeps its [`Guard`]s beside the value: the term
@@ -12,27 +12,27 @@ use dashu::rational::RBig;
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
-/// What an operation needs of its operand to have a value.
+/// The condition on the operand of an operation for it to have a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Need {
-    /// A divisor.
+    /// A divisor: not zero.
     NotZero,
-    /// What a logarithm is taken of.
+    /// The argument of a logarithm: positive.
     Positive,
-    /// What a square root is taken of.
+    /// The argument of a square root: not negative.
     NotNegative,
-    /// What an inverse sine or cosine is taken of: between minus one and one, both counted.
+    /// The argument of an inverse sine or cosine: between minus one and one, both counted.
     WithinOne,
     /// The same, neither counted: where an inverse sine has a derivative.
     InsideOne,
 }
 
-/// An operand, and what is needed of it.
+/// An operand, and the condition that it has to meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Guard {
     /// The expression.
     pub node: NodeId,
-    /// What it has to be.
+    /// The condition.
     pub need: Need,
 }
 
@@ -82,7 +82,7 @@ impl Need {
         if all { Some(true) } else { none.then_some(false) }
     }
 
-    /// The same between two doubles. A bound that is not a number tells nothing.
+    /// The same between two doubles. A bound that is not a number decides nothing.
     pub fn is_met_in(self, low: f64, high: f64) -> Option<bool> {
         let (all, none) = match self {
             Need::NotZero => (low > 0.0 || high < 0.0, low == 0.0 && high == 0.0),
@@ -94,7 +94,7 @@ impl Need {
         if all { Some(true) } else { none.then_some(false) }
     }
 
-    /// Whether an enclosed value meets it; `None` where the enclosure does not tell.
+    /// Whether an enclosed value meets it; `None` where the enclosure does not decide it.
     pub fn is_met_by_enclosure(self, value: &Enclosure) -> Option<bool> {
         self.is_met_between(&value.low(), &value.high())
     }
@@ -122,7 +122,7 @@ impl Guard {
         }
     }
 
-    /// Whether it can be read off that it holds wherever its operand exists (`true`) or nowhere (`false`).
+    /// Whether rules of sign show that it holds wherever its operand exists (`true`) or nowhere (`false`).
     pub fn is_obvious(self, graph: &Graph) -> Option<bool> {
         if let Some(known) = self.constant(graph) {
             return Some(known);

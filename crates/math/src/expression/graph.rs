@@ -59,7 +59,7 @@ pub struct Graph {
     symbol_places: HashMap<String, Symbol>,
 }
 
-/// How much there is in a graph.
+/// The extent of a graph: how many nodes, symbols and constants it has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GraphExtent {
     nodes: usize,
@@ -172,7 +172,7 @@ impl Graph {
         operands.iter().any(|operand| self.undefined[operand.0 as usize])
     }
 
-    /// How much there is, to come back to.
+    /// The present extent, to return to.
     pub fn extent(&self) -> GraphExtent {
         GraphExtent { nodes: self.nodes.len(), constants: self.constants.len(), symbols: self.symbols.len() }
     }

@@ -1,9 +1,9 @@
-//! What a program has to be given.
+//! The inputs of a program.
 
 use super::{NodeId, Symbol};
 use crate::number::{Arithmetic, Function, Refusal};
 
-/// What a program has to be given.
+/// An input of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Input {
     /// The value of a symbol.
@@ -21,7 +21,7 @@ pub enum Input {
 pub struct SymbolInput {
     /// The symbol.
     pub symbol: Symbol,
-    /// What of it.
+    /// Which function of it.
     pub function: SymbolFunction,
 }
 

@@ -25,7 +25,7 @@ enum Pending {
 
 impl Graph {
     /// The expression in the notation of the proof language, whole. Where its text would be longer than anybody reads, it is
-    /// described instead: never cut, since what is left of a formula is another formula.
+    /// described instead: never cut, since a part of a formula is another formula.
     pub fn text(&self, id: NodeId) -> String {
         let mut out = String::new();
         let mut pending = vec![Pending::Expression(id, Binding::Sum)];

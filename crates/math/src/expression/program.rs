@@ -31,7 +31,7 @@ pub struct Program {
     inputs: Vec<Input>,
     outputs: Vec<u32>,
     bare_angle: Option<Symbol>,
-    /// So many operations at the beginning depend on no input.
+    /// The number of operations, the first ones, that depend on no input.
     constant: usize,
 }
 
@@ -71,7 +71,7 @@ pub struct Failure {
     pub divisor: Option<NodeId>,
 }
 
-/// What becomes of functions.
+/// How functions are treated.
 #[derive(Clone, Copy, PartialEq)]
 enum Functions {
     Computed,
@@ -167,7 +167,7 @@ impl Program {
         program
     }
 
-    /// Puts what depends on no input at the beginning, so that it is computed once where a program is loaded.
+    /// Moves what depends on no input to the front, so that it is computed once where a program is loaded.
     fn constants_first(&mut self) {
         let mut is_constant: Vec<bool> = Vec::with_capacity(self.operations.len());
         for operation in &self.operations {
@@ -203,7 +203,7 @@ impl Program {
         &self.origins
     }
 
-    /// What has to be given, in this order.
+    /// The inputs, in the order in which they are given.
     pub fn inputs(&self) -> &[Input] {
         &self.inputs
     }

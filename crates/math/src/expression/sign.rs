@@ -51,7 +51,7 @@ impl Sign {
     }
 }
 
-/// The sign of an expression at all values of its symbols at which it exists, where a rule tells it.
+/// The sign of an expression at all values of its symbols at which it exists, where a rule gives it.
 pub fn sign(graph: &Graph, root: NodeId) -> Option<Sign> {
     sign_given(graph, root, &HashMap::new())
 }

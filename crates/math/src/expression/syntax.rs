@@ -1,4 +1,4 @@
-//! What an expression looks like before anybody knows what its names mean. Every part knows where in the text it
+//! The syntax of an expression, before its names have a meaning. Every part knows where in the text it
 //! stands, so that an error can point there.
 
 use dashu::rational::RBig;
@@ -91,7 +91,7 @@ pub struct Loop {
     pub to: Whole,
 }
 
-/// How one side is said to stand to the other.
+/// How one side is claimed to compare with the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relation {
     Equal,
@@ -103,7 +103,7 @@ pub enum Relation {
 }
 
 impl Relation {
-    /// The sign that says it.
+    /// Its sign.
     pub fn sign(self) -> &'static str {
         match self {
             Relation::Equal => "=",
@@ -120,7 +120,7 @@ impl Relation {
         !matches!(self, Relation::Equal | Relation::NotEqual)
     }
 
-    /// What the right side is to the left one.
+    /// The relation of the right side to the left one.
     pub fn turned(self) -> Relation {
         match self {
             Relation::Less => Relation::Greater,

@@ -53,7 +53,7 @@ impl DoubleDouble {
         self.hi
     }
 
-    /// What the double nearest to it leaves over.
+    /// The rest: the number less the double nearest to it.
     #[inline]
     pub const fn lo(self) -> f64 {
         self.lo

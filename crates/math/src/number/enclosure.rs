@@ -67,7 +67,7 @@ impl Enclosure {
         common_decimal(&self.low(), &self.high(), digits)
     }
 
-    /// The interval in words, its ends rounded.
+    /// The interval as text, its ends rounded.
     pub fn bounds_text(&self) -> String {
         format!(
             "between about {} and {}",
@@ -297,7 +297,7 @@ impl Arithmetic for Enclosures {
             return Err(Refusal::TooLarge);
         }
         let end = |bound: i8| Repr::new(IBig::from(bound), 0);
-        // every number of the enclosure is outside, or only some: more bits may tell
+        // every number of the enclosure is outside, or only some: more bits may decide it
         let outside = match function {
             Function::Asin | Function::Acos => a.high < end(-1) || a.low > end(1),
             Function::Sqrt => a.high < end(0),

@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 
 /// The arithmetic of a number of fixed size, IEEE double precision if none is named.
 ///
-/// Over machine floats it is fast, rounded, and never the last word. A division by exactly zero is refused and named;
+/// Over machine floats it is fast, rounded, and never decisive. A division by exactly zero is refused and named;
 /// an overflow runs through as an infinity and is for the caller to find at the end, where one test covers all
 /// operations. Over an [`Interval`](super::Interval) it is rigorous, and a divisor that may be zero is refused.
 #[derive(Clone, Copy, Debug)]

@@ -69,7 +69,7 @@ impl Interval {
         self.hi
     }
 
-    /// A double in the interval, the middle as near as doubles tell; zero for the whole line.
+    /// A double in the interval, the middle as near as doubles allow; zero for the whole line.
     pub fn mid(self) -> f64 {
         match (self.lo == f64::NEG_INFINITY, self.hi == f64::INFINITY) {
             (true, true) => 0.0,

@@ -11,7 +11,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// No lanes hold more doubles than this.
 pub const MOST_LANES: usize = 16;
 
-/// What code that runs over any numbers tells those that keep bounds on their errors. Most have no use for that.
+/// Bounds on errors that code over any numbers gives to those numbers that keep them; most ignore them.
 pub trait ErrorBounds: Copy {
     /// The same value, whose error is at most so many times `2^-53`.
     #[inline(always)]
@@ -87,7 +87,7 @@ pub trait Lanes:
 
 /// A piece of work; the method has to be `#[inline(always)]`, all the way down, like that of [`Vectorised`].
 pub trait LaneTask {
-    /// What comes of it.
+    /// Its result.
     type Output;
     /// Does it.
     fn call(self) -> Self::Output;
@@ -101,7 +101,7 @@ fn called<T: LaneTask>(task: T) -> T::Output {
 /// Work that runs over any [`Lanes`]. Implementations have to be `#[inline(always)]`, all the way down, to be compiled
 /// for the vectors of the processor; a closure in between may be compiled without them.
 pub trait Vectorised {
-    /// What comes of it.
+    /// Its result.
     type Output;
     /// `lanes` is a value of the kind to be used.
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;

@@ -1,4 +1,4 @@
-//! What a value can be.
+//! The numbers that a value can be.
 //!
 //! An [`Arithmetic`] is a set of numbers together with its operations: numbers of fixed size ([`RealNumber`]: single and
 //! double precision, double-doubles, intervals), residues modulo a prime, exact rationals, enclosures of any precision,
@@ -23,12 +23,12 @@ mod instructions;
 mod interval;
 mod lanes;
 mod laurent;
+mod number_type;
 pub mod polynomial;
 mod rational;
 mod real;
 pub mod real_roots;
 mod residue;
-mod rung;
 mod sine;
 mod taylor;
 mod tower;
@@ -59,12 +59,12 @@ pub use interval::Interval;
 pub use lanes::{LaneTask, Lanes, MOST_LANES, Vectorised};
 #[doc(hidden)]
 pub use laurent::{Laurent, Series};
+pub use number_type::NumberType;
 pub use rational::{Rationals, parse_decimal, rational_from_f64, rational_to_f64};
 pub use real::RealNumber;
 pub(crate) use residue::LOG2_PRIMES;
 #[doc(hidden)]
 pub use residue::PrimeField;
-pub use rung::Rung;
 #[doc(hidden)]
 pub use taylor::{Coefficients, Recurrences};
 #[doc(hidden)]
@@ -106,7 +106,7 @@ impl Function {
         }
     }
 
-    /// All of them, for error messages and for reading.
+    /// All of them, in the order in which error messages list them.
     pub const ALL: [Function; 8] = [
         Function::Sin,
         Function::Cos,
@@ -131,7 +131,7 @@ pub enum Refusal {
     /// The argument lies outside the function's real domain, for certain where the arithmetic has bounds.
     #[error("the argument of {} lies outside its domain", .0.name())]
     OutsideDomain(Function),
-    /// The argument cannot be told from one outside the function's real domain at this precision.
+    /// The argument cannot be distinguished from one outside the function's real domain at this precision.
     #[error("the argument of {} cannot be distinguished from one outside its domain at this precision", .0.name())]
     DomainNotSeparated(Function),
     /// The value exists but this arithmetic cannot hold it.
@@ -172,7 +172,7 @@ pub trait Arithmetic {
     fn neg(&self, a: &Self::Number) -> Result<Self::Number, Refusal>;
     /// `f(a)`
     fn apply(&self, function: Function, a: &Self::Number) -> Result<Self::Number, Refusal>;
-    /// Whether a value is zero; `None` where this arithmetic cannot tell.
+    /// Whether a value is zero; `None` where this arithmetic cannot decide it.
     fn is_zero(&self, a: &Self::Number) -> Option<bool>;
 
     /// `a^n` by repeated squaring; a negative power is the reciprocal of the positive one.

@@ -86,7 +86,7 @@ impl Polynomial {
         if negative { -IBig::from(magnitude) } else { IBig::from(magnitude) }
     }
 
-    /// The length of the longest coefficient in words, at least one.
+    /// The length of the longest coefficient in machine words, at least one.
     fn words(&self) -> usize {
         self.terms.values().map(|coefficient| coefficient.bit_len() / 64 + 1).max().unwrap_or(1)
     }

@@ -49,7 +49,7 @@ pub trait RealNumber:
     /// # Errors
     /// [`Refusal::OutsideDomain`] where [`RealNumber::is_outside`], or where there is no value (the sine of an infinity).
     fn function(self, function: Function) -> Result<Self, Refusal>;
-    /// Whether it is zero; `None` where that cannot be told.
+    /// Whether it is zero; `None` where that cannot be decided.
     fn is_zero(self) -> Option<bool>;
     /// Whether neither an infinity nor a NaN is met in it.
     fn is_finite(self) -> bool;

@@ -64,7 +64,7 @@ impl RealRoot {
         rational_to_f64(&((&self.low + &self.high) / RBig::from(2)))
     }
 
-    /// The zero as it is told: digits, and of what it is a zero in a variable of this name.
+    /// The zero as it is printed: its digits, and its polynomial in a variable of this name.
     pub fn text(&self, name: &str, polynomial: &[RBig]) -> String {
         format!("{} (a zero of {})", round_to_decimal(&self.low, DIGITS), text(name, polynomial))
     }

@@ -16,7 +16,7 @@ const FIRST: f64 = 1.5707963267341256;
 const SECOND: f64 = 6.077100506303966e-11;
 const THIRD: f64 = 2.0222662487959506e-21;
 
-/// `1.5 * 2^52`: added to a small number and subtracted again, it leaves the nearest integer.
+/// `1.5 * 2^52`: added to a small number and subtracted again, it rounds to the nearest integer.
 const TO_INTEGER: f64 = 6755399441055744.0;
 
 /// `sin r = r + r^3 S(r^2)`: the polynomial that is best in relative error (2^-58) on `|r| <= pi/4`, by Remez exchange.

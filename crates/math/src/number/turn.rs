@@ -2,7 +2,7 @@
 //!
 //! With a primitive `N`-th root of unity `z` it is `y = z + 1/z`, the cosine of `k` of these parts is half of `V_k(y) = z^k +
 //! z^-k`, where `V_0 = 2`, `V_1 = y`, `V_(k+1) = y V_k - V_(k-1)`; and the minimal polynomial of `y` follows from the
-//! cyclotomic polynomial, which reads the same from both ends: `sum of a_j z^j = z^(d/2) (a_(d/2) + sum of a_(d/2+k) V_k)`.
+//! cyclotomic polynomial, which is palindromic: `sum of a_j z^j = z^(d/2) (a_(d/2) + sum of a_(d/2+k) V_k)`.
 
 /// A polynomial in integers, from the lowest coefficient on.
 type Integers = Vec<i64>;

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::ops::Range;
 
-/// SignalDerivatives of higher order are not asked of readings.
+/// Derivatives of higher order are not asked of measurements.
 const MOST_ORDER: usize = 7;
 
 /// Maps of more operations are not evaluated.
@@ -32,7 +32,7 @@ enum Source {
 pub struct ObservabilityMap {
     program: Program,
     sources: Vec<Source>,
-    /// SignalDerivatives of outputs, order by order: so many rows.
+    /// Derivatives of outputs, order by order: so many rows.
     pub rows: usize,
     outputs: usize,
     states: usize,
@@ -146,7 +146,7 @@ impl ObservabilityMap {
         None
     }
 
-    /// The derivatives that are read near a row, of the columns of the outputs and of what drives the map.
+    /// The derivatives of the measurements near a row, of the columns of the outputs and of what drives the map.
     pub fn given(
         &self,
         task: &Task<'_>,
@@ -189,7 +189,7 @@ impl ObservabilityMap {
         })
     }
 
-    /// The degree of the polynomials that its derivatives are read off.
+    /// The degree of the polynomials from which its derivatives are taken.
     pub fn degree(&self) -> usize {
         self.rows / self.outputs - 1 + MORE_DEGREES
     }
@@ -214,7 +214,7 @@ impl ObservabilityMap {
         svd.singular_values.min() * SINGULAR > svd.singular_values.max()
     }
 
-    /// What was read of the rows.
+    /// The measured values of the rows.
     pub fn read(&self, task: &Task<'_>, given: &SignalDerivatives) -> Vec<f64> {
         let one = |row: usize| {
             let column = task.full.measured[row % self.outputs];

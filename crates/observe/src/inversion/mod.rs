@@ -1,10 +1,10 @@
-//! A start of multiple shooting that needs no guess: Lie derivatives inverted on smoothed readings.
+//! A start of multiple shooting that needs no guess: Lie derivatives inverted on smoothed measurements.
 //!
-//! Where the outputs and their derivatives along the motion tell the state, the map `x -> (h, L_f h, L_f^2 h, ...)` can be solved for it: what
-//! stands on its left side is read off polynomials through the readings near a time (A. Savitzky, M. J. E. Golay, Smoothing and
+//! Where the outputs and their derivatives along the motion determine the state, the map `x -> (h, L_f h, L_f^2 h, ...)` can be solved for it: its
+//! left side is taken from polynomials through the measurements near a time (A. Savitzky, M. J. E. Golay, Smoothing and
 //! differentiation of data by simplified least squares procedures, 1964). With the derivatives of the signals that drive the system the map is that of R. Hermann, A. J. Krener, Nonlinear
-//! controllability and observability, 1977. High derivatives of noisy readings are worth little, so that the result is where a search begins and no answer: the
-//! polynomials are fitted over stretches of several lengths, and the start is that whose segments leave the least.
+//! controllability and observability, 1977. High derivatives of noisy measurements are worth little, so that the result is where a search begins and no answer: the
+//! polynomials are fitted over stretches of several lengths, and the start is that whose segments have the least residual.
 
 mod map;
 
@@ -104,7 +104,7 @@ fn solved(
     anchors.dedup();
     let mut best: Option<(f64, Vec<Vec<f64>>)> = None;
     for state in draws {
-        // what is read is where it was read
+        // a measured state begins at its measurement
         let first = |node: &usize| {
             let place = |place: usize| {
                 let column = task.full.column_of(place)?;
@@ -137,7 +137,7 @@ fn solved(
     Some(Nodes { moving, constant: DVector::from_iterator(segments.constant.len(), constant) })
 }
 
-/// The map at the nodes of a window, set equal to what was read.
+/// The map at the nodes of a window, set equal to the measurements.
 struct Inversion<'a> {
     map: &'a ObservabilityMap,
     segments: &'a Segments<'a>,
@@ -148,7 +148,7 @@ struct Inversion<'a> {
 }
 
 impl Inversion<'_> {
-    /// Levenberg and Marquardt's method for the states at some nodes, with the constants that they share or without; the error that is left.
+    /// Levenberg and Marquardt's method for the states at some nodes, with the constants that they share or without; the residual error.
     fn solve(
         &self,
         nodes: &[usize],
@@ -202,7 +202,7 @@ impl Inversion<'_> {
         there
     }
 
-    /// The error, what is left of each row at each node, and the derivatives: first by the moving states node by node, then by the constants.
+    /// The error, the residual of each row at each node, and the derivatives: first by the moving states node by node, then by the constants.
     fn expand(
         &self,
         nodes: &[usize],

@@ -1,4 +1,4 @@
-//! Why a record could not be read or written.
+//! Why a record cannot be read or written.
 
 use super::{Fault, MOST_FAULTS};
 use miette::Diagnostic;

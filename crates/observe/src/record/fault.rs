@@ -34,7 +34,7 @@ pub struct FaultRules {
     pub spike: f64,
     /// The standard deviation of the time between two samples, in seconds.
     pub jitter: f64,
-    /// The grid on which the readings of a column lie, in the column's unit; a column that is not here has none.
+    /// The grid on which the measurements of a column lie, in the column's unit; a column that is not here has none.
     pub resolution: BTreeMap<String, f64>,
     /// What an empty cell means in a column; in one that is not here it is a fault.
     pub empty: BTreeMap<String, EmptyCells>,
@@ -43,7 +43,7 @@ pub struct FaultRules {
 }
 
 impl Default for FaultRules {
-    /// Stop at a fault; eight usual departures are a spike; even times, fine readings.
+    /// Stop at a fault; eight usual departures are a spike; even times, fine measurements.
     fn default() -> Self {
         FaultRules {
             on_fault: OnFault::Stop,

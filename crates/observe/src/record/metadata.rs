@@ -152,7 +152,7 @@ const VALUES_OF_PAGE: i16 = 1;
 /// page in its column, and no number of values is beyond belief.
 ///
 /// # Errors
-/// In words, what is wrong.
+/// A message about what is wrong.
 pub(super) fn check(file: &[u8]) -> Result<(), String> {
     let body =
         file.strip_suffix(MAGIC).filter(|body| body.starts_with(MAGIC) && file.len() >= TAIL + MAGIC.len());

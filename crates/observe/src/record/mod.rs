@@ -59,7 +59,7 @@ const ROOM: Allowance = Allowance { bytes: 1_600 << 20, nodes: u64::MAX, steps: 
 /// A table of numbers: a time in seconds and named columns, one row a sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
-    /// What the first column is where it is no time.
+    /// The name of the first column where it is not time.
     over: Option<String>,
     times: Vec<f64>,
     names: Vec<String>,
@@ -80,12 +80,12 @@ pub struct ReadRecord {
     pub sparse: Vec<SparseColumn>,
     /// The first time as it was written, where times are dates: they are counted from it.
     pub began: Option<String>,
-    /// Rows at the beginning and at the end of which a column that drives the model says nothing: not in the record.
+    /// Rows before the first and after the last value of a column that drives the model: not in the record.
     pub outside: [usize; 2],
 }
 
 impl ReadRecord {
-    /// Of a record with which nothing is wrong.
+    /// Of a record without faults.
     pub fn whole(record: Record) -> ReadRecord {
         let (faults, left_out, sparse) = (Vec::new(), Vec::new(), Vec::new());
         ReadRecord { record, faults, left_out, sparse, began: None, outside: [0, 0] }

@@ -1,43 +1,43 @@
 //! Values that are far from what their neighbours foretell.
 //!
-//! The rule. A value is foretold in three ways, each time by the parabola of least squares through readings that do
+//! The rule. A value is foretold in three ways, each time by the parabola of least squares through measurements that do
 //! not include it: the five before it, the five after it, and the three on either side. Its departure from each is
 //! divided by what that way does to unit white noise, which makes them alike, and the least of the three counts: a
 //! corner, a step or the neighbour of a spike is foretold well from one side, a spike from none. The usual departure
 //! is the upper quartile of these, divided by that of unit white noise, so that it is the noise's standard deviation
 //! where there is nothing but white noise. In data without noise it would be next to nothing; so it is never taken
-//! below a tenth of the usual change from reading to reading nearby, three tenths of the sensor's resolution, and
+//! below a tenth of the usual change from measurement to measurement nearby, three tenths of the sensor's resolution, and
 //! 1e-9 of the largest value. A value that departs by more than the threshold times this is a spike, the worst among
 //! its neighbours first; it is taken out and the rest is judged anew, until no more are found.
 //!
 //! A fault returns to where it was, and a jump stays: what a body does that falls from one stable pose into another is none. So a value that lies between its neighbours is no
 //! spike, nor one at a jump between two smooth stretches that belongs to either ([`stays`]).
 //!
-//! What follows: a spike has to be larger among the five readings at either end, which are foretold less well; with
-//! fewer than [`FEWEST`] readings there is no judgement; where a quarter of the readings or more are spikes, they are
-//! what is usual; a reading between two spikes can be taken for one too; several wrong readings in a row that agree are
+//! What follows: a spike has to be larger among the five measurements at either end, which are foretold less well; with
+//! fewer than [`FEWEST`] measurements there is no judgement; where a quarter of the measurements or more are spikes, they are
+//! what is usual; a measurement between two spikes can be taken for one too; several wrong measurements in a row that agree are
 //! a step and no spikes.
 
 use std::collections::BTreeSet;
 
-/// Fewer readings than this are not judged: the upper quartile of so few says little.
+/// Fewer measurements than this are not judged: the upper quartile of so few says little.
 pub(super) const FEWEST: usize = 16;
 
 /// The upper quartile of the least departure in evenly sampled white noise of unit standard deviation (from a
 /// simulation; a test draws it anew).
 const QUARTILE_OF_NOISE: f64 = 0.535;
 
-/// The neighbours by which a value is foretold, as offsets among the readings that are left.
+/// The neighbours by which a value is foretold, as offsets among the measurements that are left.
 const WAYS: [&[isize]; 3] = [&[-5, -4, -3, -2, -1], &[1, 2, 3, 4, 5], &[-3, -2, -1, 1, 2, 3]];
 
-/// What is added where there are no five readings before, or none after (with the signs changed): one wrong reading
+/// What is added where there are no five measurements before, or none after (with the signs changed): one wrong measurement
 /// near the end cannot spoil all of these for its neighbours.
 const AT_AN_END: [[isize; 5]; 2] = [[2, 3, 4, 5, 6], [3, 4, 5, 6, 7]];
 
 /// How far away those neighbours are at most.
 const REACH: usize = 5;
 
-/// How far away the neighbours are at the ends: what is farther from a reading has no say in its departure.
+/// How far away the neighbours are at the ends: what is farther from a measurement has no say in its departure.
 const FARTHEST: usize = 7;
 
 /// The spikes among pairs of time and value, times increasing and all finite: index, and how many usual departures it
@@ -46,7 +46,7 @@ pub(super) fn spikes(series: &[(f64, f64)], threshold: f64, resolution: f64) -> 
     let size = series.iter().fold(0.0, |size: f64, (_, value)| size.max(value.abs()));
     let floor = (0.3 * resolution).max(1e-9 * size).max(f64::MIN_POSITIVE);
     let mut found = Vec::new();
-    // the readings that are left, by their indices, and their departures where they are known
+    // the measurements that are left, by their indices, and their departures where they are known
     let mut left: Vec<(usize, Option<f64>)> = (0..series.len()).map(|index| (index, None)).collect();
     while left.len() >= FEWEST {
         let points: Vec<(f64, f64)> = left.iter().map(|(index, _)| series[*index]).collect();
@@ -61,7 +61,7 @@ pub(super) fn spikes(series: &[(f64, f64)], threshold: f64, resolution: f64) -> 
             false => departures[at] / usual.max(change_nearby(&points, at) / 10.0),
         };
         let scores: Vec<f64> = (0..points.len()).map(score).collect();
-        // the worst first: a reading with spikes on either side of it has yet to be foretold without them
+        // the worst first: a measurement with spikes on either side of it has yet to be foretold without them
         let nearby = |at: usize, reach: usize| at.saturating_sub(reach)..(at + reach + 1).min(scores.len());
         let worst = |at: usize| scores[nearby(at, REACH)].iter().all(|other| *other <= scores[at]);
         let spikes: BTreeSet<usize> =
@@ -154,11 +154,11 @@ fn foretell(points: &[(f64, f64)], time: f64) -> (f64, f64) {
     (foretold, f64::sqrt(variance))
 }
 
-/// Readings of a stretch on either side of a jump, and by how much the jump exceeds the changes among them.
+/// Measurements of a stretch on either side of a jump, and by how much the jump exceeds the changes among them.
 const SIDE: usize = 3;
 const SMOOTH: f64 = 4.0;
 
-/// The usual change from one reading to the next among the three on either side, without the reading itself.
+/// The usual change from one measurement to the next among the three on either side, without the measurement itself.
 fn change_nearby(points: &[(f64, f64)], at: usize) -> f64 {
     let side = |range: std::ops::Range<usize>| {
         let points = points.get(range.start..range.end.min(points.len())).unwrap_or_default();
@@ -216,15 +216,15 @@ mod tests {
         assert!(gain > 1.0);
     }
 
-    /// From five even readings the next is foretold with the weights 9/5, 0, -4/5, -3/5, 3/5 (normal equations by
-    /// hand), whose squares with the reading's own sum to 28/5.
+    /// From five even measurements the next is foretold with the weights 9/5, 0, -4/5, -3/5, 3/5 (normal equations by
+    /// hand), whose squares with the measurement's own sum to 28/5.
     #[test]
     fn the_gain_of_five_readings_before() {
         let (_, gain) = foretell(&[-5.0, -4.0, -3.0, -2.0, -1.0].map(|t| (t, 0.0)), 0.0);
         assert!((gain * gain - 28.0 / 5.0).abs() < 1e-12, "{}", gain * gain);
     }
 
-    /// Twelve radians in 400 readings, exactly: what is left is the error of the parabola.
+    /// Twelve radians in 400 measurements, exactly: the departures are the error of the parabola.
     #[test]
     fn smooth_data_has_no_spikes() {
         assert_eq!(indices(&sampled(400, |t| (9.0 * t).sin() + 0.2 * (23.0 * t).cos())), [0usize; 0]);
@@ -271,7 +271,7 @@ mod tests {
             let mut series = sampled(400, |t| (5.0 * t).sin());
             series.iter_mut().zip(noise(seed, 400)).for_each(|(point, n)| point.1 += 1e-3 * n);
             assert_eq!(indices(&series), [0usize; 0], "seed {seed}");
-            // thirty standard deviations: 8 usual departures from five readings on one side are 8 * 2.37
+            // thirty standard deviations: 8 usual departures from five measurements on one side are 8 * 2.37
             series[123].1 += 0.03;
             assert_eq!(indices(&series), [123], "seed {seed}");
         }
@@ -288,12 +288,12 @@ mod tests {
         for (wrong, size) in all.iter().flat_map(|wrong| [(wrong, 0.5), (wrong, -40.0)]) {
             assert_eq!(found(wrong, size), *wrong, "{size}");
         }
-        // alike on either side of a good reading: which of the three are wrong cannot be told from nearby
+        // alike on either side of a good measurement: the neighbours do not determine which of the three are wrong
         assert_eq!(found(&[57, 59], 0.5), [57, 58, 59]);
     }
 
     #[test]
-    fn readings_on_a_grid_have_no_spikes() {
+    fn measurements_on_a_grid_have_no_spikes() {
         let grid = 1e-4;
         let mut series = sampled(400, |t| grid * (0.02 * (1.0 - (4.0 * (t - 0.9)).tanh()) / grid).round());
         let found = |series: &[(f64, f64)]| spikes(series, 8.0, grid).len();

@@ -14,9 +14,9 @@ struct Moment {
     has_zone: bool,
 }
 
-/// The moment that a text tells.
+/// The moment that a text states.
 fn moment(text: &str) -> Option<Moment> {
-    // a blank in the place of the T, as databases write it, is read as well
+    // a blank in the place of the T, as databases write it, is accepted as well
     if let Ok(found) = DateTime::parse_from_rfc3339(text) {
         return Some(Moment { nanoseconds: found.timestamp_nanos_opt()?, has_zone: true });
     }
@@ -97,7 +97,7 @@ mod tests {
         }
     }
 
-    /// A word, a number among dates before any, a date among numbers and one of another kind stay what they are.
+    /// A text, a number among dates before any, a date among numbers and one of another kind stay what they are.
     #[test]
     fn what_is_no_date_stays() {
         let (cells, began) = counted(&["1.5", "2026-11-28T10:00:00Z"]);

@@ -36,7 +36,7 @@ pub struct RowStream {
     columns: ColumnNames,
     needed: Vec<String>,
     rules: FaultRules,
-    /// The beginning of a line whose end has not arrived.
+    /// The first part of a line whose end has not arrived.
     rest: Vec<u8>,
     /// Lines that have arrived.
     lines: u64,

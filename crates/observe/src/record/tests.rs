@@ -65,7 +65,7 @@ fn each_fault_is_told_with_its_row() {
         [(7, Some(8), None, FaultKind::Surplus { cells: 2 })]
     );
     let twice = faults(&record(30, &[(7, "0.5,1.2")]));
-    // the reading of 0.6 s is not there: the time twice is told, and the gap after it
+    // the measurement of 0.6 s is not there: the repeated time is reported, and the gap after it
     assert_eq!(twice[0], (7, Some(8), time(), FaultKind::Duplicate { of: 6 }));
     assert!(matches!(twice[1..], [(8, Some(9), None, FaultKind::Gap { missing: 1, .. })]), "{twice:?}");
     for wrong in ["0.25", "-3", "1e9", "0.95"] {
@@ -99,8 +99,8 @@ fn a_gap_says_how_many_samples_are_missing() {
     assert!((step - 0.4).abs() < 1e-12 && (usual - 0.1).abs() < 1e-12);
 }
 
-/// Steps of 0.04, 0.10 and 0.16 s have a standard deviation of 0.06 sqrt(2/3) s: told of it, the rule lets them pass,
-/// and still sees ten samples that are missing.
+/// Steps of 0.04, 0.10 and 0.16 s have a standard deviation of 0.06 sqrt(2/3) s: given it, the rule lets them pass,
+/// and still finds ten missing samples.
 #[test]
 fn a_gap_is_told_from_jitter() {
     let mut text = "time,s1\n".to_owned();
@@ -126,7 +126,7 @@ fn a_spike_is_told_with_its_row_and_size() {
     let [(21, Some(22), Some(column), FaultKind::Spike { value, departure })] = &told[..] else {
         panic!("{told:?}")
     };
-    // 5.9 off; a tenth of the usual change of 0.2 is the least usual departure, five readings have the gain sqrt(28/5)
+    // 5.9 off; a tenth of the usual change of 0.2 is the least usual departure, five measurements have the gain sqrt(28/5)
     assert_eq!((column.as_str(), *value), ("s1", 9.9));
     assert!((departure - 5.9 / 0.02 / (28.0f64 / 5.0).sqrt()).abs() < 1e-6, "{departure}");
 }

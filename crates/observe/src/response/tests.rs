@@ -11,7 +11,7 @@ fn map<T: Clone>(pairs: &[(&str, T)]) -> BTreeMap<String, T> {
     pairs.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect()
 }
 
-/// `x' = a x + u` with `u = b t` has the solution `x = (x0 + b/a^2) e^(a t) - b/a^2 - b t/a`; `u'` is seen as well, and is `b`.
+/// `x' = a x + u` with `u = b t` has the solution `x = (x0 + b/a^2) e^(a t) - b/a^2 - b t/a`; `u'` is an output as well, and is `b`.
 #[test]
 fn a_line_is_driven_by_a_function_of_time() {
     let text = "system \"line\" state x param a = -2, b known u(t) drift f x' = a*x + u output x, x^2 + u'";
@@ -61,7 +61,7 @@ fn what_does_not_move_says_why() {
     assert_eq!(moved, "'x' moves by its own equation, and is no function of time");
 }
 
-/// An oscillator has no pole: who asks for a sample in a year is told that this is too far.
+/// An oscillator has no pole: for a sample in a year the message says that this is too far.
 #[test]
 fn a_sample_that_is_too_far_away_is_no_pole() {
     let oscillator = system("system \"o\" state x, v drift f x' = v v' = -x output x");

@@ -8,9 +8,9 @@ use std::sync::atomic::AtomicBool;
 
 static NEVER: AtomicBool = AtomicBool::new(false);
 
-/// A point that is driven at a speed that is read: `x(t_i) = x(0) + sum of the steps`. With errors of the speed alone and two readings
+/// A point that is driven at a measured speed: `x(t_i) = x(0) + sum of the steps`. With errors of the speed alone and two measurements
 /// of x the covariance is by hand; steps are of length one and the curves of two samples are straight, so that the second
-/// reading errs by the mean of both speeds' errors.
+/// measurement errs by the mean of both speeds' errors.
 #[test]
 fn errors_of_a_speed_add_up_in_the_place() {
     let text =
@@ -168,7 +168,7 @@ fn weights_are_linear_in_the_samples() {
     assert!(many < 10.0 * few, "{few} s and {many} s");
 }
 
-/// Of what was not measured nothing is weighed: the recursion is that of the full matrix without its rows and columns.
+/// Differences that were not measured have no weight: the recursion is that of the full matrix without its rows and columns.
 #[test]
 fn what_was_not_measured_is_as_if_it_were_not_there() {
     let (system, signals, question) = pushed(60);
@@ -197,7 +197,7 @@ fn what_was_not_measured_is_as_if_it_were_not_there() {
         assert!(off(&diagonal, &covariance.try_inverse().unwrap().diagonal()) < 1e-9);
         let slopes = DMatrix::zeros(n, 2);
         let fit = weights.fit(&weighted, &slopes, 1e-9, kept.len(), (Loss::Squares, 1e-3));
-        assert!((fit.chi_square / white.norm_squared() - 1.0).abs() < 1e-9 && fit.readings == kept.len());
+        assert!((fit.chi_square / white.norm_squared() - 1.0).abs() < 1e-9 && fit.measurements == kept.len());
     }
 }
 

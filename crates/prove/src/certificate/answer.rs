@@ -4,7 +4,7 @@ use super::boxes::FreeCoordinate;
 use super::progress::Progress;
 use palmistry_lang::{CoordinateRange, FieldRole, Range};
 
-/// How a box stands.
+/// What is proved of a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BoxStanding {
     /// Full rank is proved at all its states.
@@ -17,12 +17,12 @@ pub enum BoxStanding {
     Undecided,
 }
 
-/// A minor that was used.
+/// A minor that was used for a proof.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegionMinor {
     /// The rows beside those that are unit vectors.
     pub rows: Vec<String>,
-    /// Its factors. It has others only where the rows are not defined.
+    /// Its factors: where the rows are defined, it vanishes where one of these does and nowhere else.
     pub factors: Vec<String>,
 }
 
@@ -35,11 +35,11 @@ pub struct Vanishing {
     pub minor: Option<usize>,
     /// How many boxes.
     pub boxes: u64,
-    /// The part of the volume of these boxes, in the coordinates of the part, rounded down.
+    /// These boxes' share of the volume, in the coordinates of the part, rounded down.
     pub fraction: f64,
 }
 
-/// Coordinates that were looked at apart from the others.
+/// Coordinates that were examined separately from the others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartAnswer {
     /// Their names.
@@ -48,7 +48,7 @@ pub struct PartAnswer {
     pub guards: Vec<String>,
     /// The factors that all minors have in common.
     pub common: Vec<String>,
-    /// Whether one of several minors has to be different from zero besides.
+    /// Of how many minors one has to be different from zero in addition; 0 if there is no such condition.
     pub alternatives: usize,
     /// The proved fraction of the volume in these coordinates, rounded down.
     pub proved: f64,
@@ -63,7 +63,7 @@ pub struct PartAnswer {
 /// An open box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenBox {
-    /// Where some coordinates are; all others are anywhere.
+    /// The ranges of the coordinates that are restricted; the others take all their values.
     pub ranges: Vec<CoordinateRange<f64>>,
     /// How it stands.
     pub standing: BoxStanding,
@@ -71,7 +71,7 @@ pub struct OpenBox {
     pub factor: Option<String>,
     /// Whether it is proved to contain no sampled state.
     pub avoided: bool,
-    /// Its part of the volume, rounded down.
+    /// Its share of the volume, rounded down.
     pub fraction: f64,
 }
 
@@ -106,33 +106,33 @@ pub struct RegionAnswer {
     pub file: String,
     /// The title of the system.
     pub title: String,
-    /// The fields that move the states: of these words are made.
+    /// The fields that move the states; the Lie derivatives are along these.
     pub fields: Vec<FieldRole>,
-    /// The number of states, and the number of columns that are left when unit rows are taken out.
+    /// The number of states.
     pub dimension: usize,
-    /// The columns that are left when unit rows are taken out.
+    /// The number of columns that remain after unit rows, and the columns of their entries, are taken out.
     pub columns: usize,
-    /// The rows beside unit rows, and the length of the longest words.
+    /// The number of rows other than unit rows.
     pub rows: usize,
-    /// The length of the longest words; none of a file's own rows.
+    /// The highest order of the Lie derivatives; `None` for a file's own rows.
     pub order: Option<usize>,
     /// The sides of the box, and whether anything depends on them.
     pub ranges: Vec<(FreeCoordinate, bool)>,
     /// The minors that were used.
     pub minors: Vec<RegionMinor>,
-    /// The minors that these were chosen from, and whether there are no others.
+    /// The number of minors that these were chosen from.
     pub candidates: usize,
-    /// Whether these are all minors that there are.
+    /// Whether these are all the minors of the rows.
     pub all_minors: bool,
-    /// The parts of the box that were looked at apart.
+    /// The parts of the box that were examined separately.
     pub parts: Vec<PartAnswer>,
-    /// Full rank is proved on so much; rounded down.
+    /// The fraction on which full rank is proved; rounded down.
     pub proved: f64,
-    /// And on so much of what lies outside of the avoided neighbourhoods; a lower bound.
+    /// The same as a fraction of what lies outside the avoided neighbourhoods; a lower bound.
     pub proved_of_sampled: f64,
-    /// Boxes in which a minor is proved to vanish somewhere; rounded down.
+    /// The fraction covered by boxes in which a minor is proved to vanish somewhere; rounded down.
     pub minor_vanishes: f64,
-    /// All else; rounded up.
+    /// The remaining fraction; rounded up.
     pub rest: f64,
     /// What sampled states keep away from.
     pub avoid: Vec<String>,
@@ -144,7 +144,7 @@ pub struct RegionAnswer {
     pub open_boxes: u64,
     /// How long it took, in s.
     pub seconds: f64,
-    /// Whether no box is open any more.
+    /// Whether no open box is left.
     pub finished: bool,
     /// How the proved fraction grew.
     pub curve: Vec<Progress>,
@@ -152,8 +152,8 @@ pub struct RegionAnswer {
     pub largest: Vec<OpenBox>,
     /// A map of two coordinates, if two matter.
     pub map: Option<RegionMap>,
-    /// What else is to be said.
+    /// Further remarks.
     pub remarks: Vec<String>,
-    /// What would have to hold for the system and its rows to exist, and holds nowhere; nothing is proved then.
+    /// Conditions that the system and its rows need to exist and that hold nowhere; nothing is proved then.
     pub nowhere: Vec<String>,
 }

@@ -1,8 +1,8 @@
 //! Where the rows exist: what the terms of the file divide by is not zero, and what they take roots, logarithms and
 //! inverse sines of lies where these have a value.
 //!
-//! The graph has simplified what it is made of, and what was cancelled is no longer in it; so all that a box has to be
-//! looked at for comes from the guards that were noted when the file was read. Lie derivatives divide by powers of the same
+//! The graph has simplified its expressions, and what was cancelled is no longer in it; so all conditions that a box is
+//! tested for come from the guards that were noted when the file was read. Lie derivatives divide by powers of the same
 //! things and by no others: they exist, and are smooth, where outputs and fields are.
 
 use super::collector::Collector;

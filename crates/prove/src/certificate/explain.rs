@@ -62,7 +62,7 @@ pub(super) fn explain(part: &Part, cell: &Cell, workspace: &mut Workspace) -> (W
     (Why::Undecided, avoided)
 }
 
-/// Sampled states have a magnitude of at least [`AVOIDED`], as floating point sees it: a little less is surely avoided.
+/// Sampled states have a magnitude of at least [`AVOIDED`] in floating point: a little less is surely avoided.
 const JUST_AVOIDED: f64 = AVOIDED * (1.0 - 1e-9);
 /// And a little more is surely not.
 const NOT_AVOIDED: f64 = AVOIDED * (1.0 + 1e-9);

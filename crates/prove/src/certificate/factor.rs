@@ -67,7 +67,7 @@ impl Factor {
         self.need.is_met_by_interval(value) == Some(true)
     }
 
-    /// Whether it is worth while to try for a proof: where zero is enough, floating point cannot tell.
+    /// Whether it is worthwhile to try for a proof: where zero is enough, floating point cannot decide.
     pub fn is_worth_trying(&self, guess: Guess) -> bool {
         guess.ratio >= HOPE || self.need != Need::NotZero && self.need != Need::Positive
     }

@@ -9,7 +9,7 @@
 //!
 //! Three things make boxes large. Factors have narrower bounds than their product, and depend on fewer coordinates
 //! (`minors`). A factor's bounds take into account where it is monotone, and squares that can be completed
-//! (`factor`). And factors without common coordinates are looked at apart, in fewer dimensions (`part`).
+//! (`factor`). And factors without common coordinates are examined separately, in fewer dimensions (`part`).
 //!
 //! This module knows nothing of particular systems.
 

@@ -1,7 +1,7 @@
 //! A question about some coordinates alone.
 //!
 //! Full rank is proved where all of some factors are different from zero, and with them all of those of one minor of
-//! several. Factors that have no coordinate in common can be looked at apart: the set on which the whole is proved is
+//! several. Factors that have no coordinate in common can be examined separately: the set on which the whole is proved is
 //! then a product of sets of fewer dimensions, and its volume the product of theirs. What a search costs grows with the
 //! power of the dimension.
 
@@ -71,8 +71,8 @@ pub(super) struct Demand<'a> {
     pub guards: &'a [usize],
     pub minors: &'a [FactoredMinor],
     pub avoid: &'a [NodeId],
-    /// Factors of so many coordinates are asked of all minors, also where only one has them: little is lost, and the others
-    /// can be looked at apart.
+    /// Factors of at most this many coordinates are required of all minors, even if only one has them: little is lost,
+    /// and the others can be examined separately.
     pub asked_of_all: usize,
 }
 

@@ -99,7 +99,7 @@ fn factor_of(part: &Part, why: Why) -> Option<String> {
     }
 }
 
-/// What is told of a part.
+/// What is reported of a part.
 pub(super) fn part_answer(part: &Part, volumes: &PartVolumes, search: &Search) -> PartAnswer {
     let texts = |list: &[usize]| list.iter().map(|factor| part.factors[*factor].text.clone()).collect();
     let mut vanishing: BTreeMap<(Option<usize>, String), Volume> = BTreeMap::new();

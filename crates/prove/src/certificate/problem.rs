@@ -26,7 +26,7 @@ pub(super) struct Problem {
     pub columns: usize,
     /// The number of rows, without unit rows.
     pub rows: usize,
-    /// The length of the longest words.
+    /// The highest order of the Lie derivatives.
     pub order: Option<usize>,
     /// All sides of the box, whether anything depends on them or not.
     pub ranges: Vec<FreeCoordinate>,
@@ -85,7 +85,7 @@ impl Problem {
                 Err(why) => remarks.push(format!("{} is left out: {why}", names[*row])),
             }
         }
-        ready.sort_by_key(CommonDenominatorRow::length); // stable: words of one length stay in order
+        ready.sort_by_key(CommonDenominatorRow::length); // stable: rows of one length stay in order
         let split = minors_of(&collector.products, &ready, columns, &mut collector.known);
         let mut minors = Vec::new();
         // to polynomials a root is an unknown of its own, and what is zero by its square is no zero to them
@@ -158,9 +158,9 @@ struct RangesAndValues {
     ranges: Ranges,
     /// The values that can be put in.
     values: Assignment,
-    /// All symbols that are held.
+    /// All symbols that are fixed.
     exactly: Vec<HeldSymbol>,
-    /// What the file does not say, and is taken.
+    /// Ranges that the file does not give and that are taken by default.
     by_default: Vec<(String, Range)>,
 }
 
@@ -223,7 +223,7 @@ fn ranges_of(system: &mut System, given: &BTreeMap<Symbol, (RBig, RBig)>) -> Res
     Ok(RangesAndValues { ranges: found, values, exactly, by_default })
 }
 
-/// An angle that is held, give or take what the exact states of [`Locus`](palmistry_rank::observability::Locus) differ from it:
+/// A fixed angle, with room for the difference from the exact states of [`Locus`](palmistry_rank::observability::Locus):
 /// they have the double nearest to the tangent of its half.
 fn held_angle(value: &RBig) -> Interval {
     let slack = 8.0 * f64::EPSILON * rational_to_f64(value).abs().max(1.0);

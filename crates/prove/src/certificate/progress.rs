@@ -21,7 +21,7 @@ pub struct Limits {
 pub struct Progress {
     /// The boxes that were looked at.
     pub boxes: u64,
-    /// The time since the beginning, in s.
+    /// The time since the start, in s.
     pub seconds: f64,
     /// The proved fraction of the volume, rounded down.
     pub proved: f64,
@@ -31,7 +31,7 @@ pub struct Progress {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Searches {
     pub searches: Vec<Search>,
-    /// The part whose turn it is, with what is left of the turn.
+    /// The part whose turn it is, with what remains of the turn.
     pub turn: Option<(usize, Turn)>,
     pub seconds: f64,
     pub curve: Vec<Progress>,
@@ -39,7 +39,7 @@ pub(super) struct Searches {
 
 /// The curve has a point wherever the number of boxes has grown by this factor.
 const STEP: f64 = 1.25;
-/// So many proved boxes are kept before it is seen which are the largest.
+/// This many proved boxes are kept before they are sorted to find the largest.
 const MOST_UNSORTED: usize = 100_000;
 /// The time for which an open box is looked at in the end.
 const SECONDS_TO_EXPLAIN: f64 = 2e-6;

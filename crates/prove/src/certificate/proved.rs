@@ -40,7 +40,7 @@ impl Region {
         &self.problem.written.guards
     }
 
-    /// The symbols that are held.
+    /// The symbols that are fixed.
     pub fn held(&self) -> &[HeldSymbol] {
         &self.problem.written.held
     }

@@ -122,7 +122,7 @@ impl Region {
 /// So many proved boxes of each part are kept if nothing else is said.
 const KEPT: usize = 2000;
 
-/// On which part of its sample box a system has full rank, after so many boxes: as [`certify_region`], and nothing stops it.
+/// The fraction of its sample box on which a system has full rank, after so many boxes: [`certify_region`] without an interrupt.
 ///
 /// # Errors
 /// As [`Region::new`].
@@ -130,7 +130,7 @@ pub fn certify(system: &mut System, boxes: u64) -> Result<RegionAnswer, String> 
     certify_region(system, boxes, &UNINTERRUPTED)
 }
 
-/// The sample box of a system after so many boxes: the short version, with the same result on every machine.
+/// The certificate for the sample box of a system after so many boxes: the short version, with the same result on every machine.
 ///
 /// # Errors
 /// As [`Region::new`].

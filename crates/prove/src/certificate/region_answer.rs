@@ -129,7 +129,7 @@ impl Region {
         self.problem.minors.iter().enumerate().map(of).collect()
     }
 
-    /// How the boxes stand in which a state may lie; the worst of them, where these are several. `at` encloses the state's
+    /// How the boxes stand in which a state may lie; the worst of them if there are several. `at` encloses the state's
     /// coordinates. `None` where one of them is not given, or lies outside of the box.
     pub fn standing(&self, at: impl Fn(Symbol) -> Option<Interval>) -> Option<BoxStanding> {
         let mut worst =

@@ -8,15 +8,15 @@ use palmistry_rank::observability::{Codistribution, Length, OWN_ROWS, Stop};
 /// Which rows are to have full rank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegionRows {
-    /// The full codistribution, with words of so many fields. `None` takes words one field longer than almost all
-    /// states need, if these are not too many: where the minors of the shorter ones vanish together, longer ones see.
+    /// The full codistribution, with Lie derivatives up to this order. `None` takes one order more than the generic
+    /// rank needs, if these are not too many: where all minors of the lower orders vanish, higher ones may not.
     Codistribution(Option<usize>),
     /// The file's own choice of rows.
     Own,
 }
 
 impl Default for RegionRows {
-    /// The full codistribution, its words as long as they have to be.
+    /// The full codistribution, with Lie derivatives of as high an order as is needed.
     fn default() -> Self {
         RegionRows::Codistribution(None)
     }
@@ -25,13 +25,13 @@ impl Default for RegionRows {
 /// A row of the matrix that is to have full rank.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RegionRow {
-    /// The word of the Lie derivative, or the number of the file's own row.
+    /// The Lie derivative as text, or the number of the file's own row.
     pub name: String,
     /// The entries, one for each state.
     pub entries: Vec<NodeId>,
 }
 
-/// A symbol that is held at one value.
+/// A symbol that is fixed at one value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HeldSymbol {
     /// The symbol.
@@ -49,8 +49,8 @@ pub(super) struct WrittenRows {
     pub held: Vec<HeldSymbol>,
 }
 
-/// More words than this are not taken unless they are asked for.
-const MOST_WORDS: usize = 80;
+/// More Lie derivatives than this are not taken unless an order is asked for.
+const MOST_LIE_DERIVATIVES: usize = 80;
 
 /// The rows with their names.
 pub(super) fn rows_by_name(names: &[String], entries: &[NodeId], dimension: usize) -> Vec<RegionRow> {
@@ -63,7 +63,7 @@ pub(super) struct NamedRows {
     pub names: Vec<String>,
     /// One row after the other.
     pub entries: Vec<NodeId>,
-    /// The length of the longest words; `None` of a file's own rows.
+    /// The highest order of the Lie derivatives; `None` for a file's own rows.
     pub order: Option<usize>,
 }
 
@@ -71,7 +71,7 @@ impl NamedRows {
     /// The rows that are asked for, with the values put in.
     ///
     /// # Errors
-    /// In words: the file has no rows of its own, or no words can be made.
+    /// In words: the file has no rows of its own, or no Lie derivatives can be made.
     pub fn of(system: &mut System, rows: RegionRows, values: &Assignment) -> Result<NamedRows, String> {
         let order = match rows {
             RegionRows::Own => {
@@ -92,11 +92,11 @@ impl NamedRows {
         let mut found = Codistribution::new(system, values, length)?;
         if order.is_none() && found.stop == Stop::Full {
             let longer = Codistribution::new(system, values, Length::Exactly(found.order + 1))?;
-            if longer.words.len() <= MOST_WORDS {
+            if longer.lie_derivatives.len() <= MOST_LIE_DERIVATIVES {
                 found = longer;
             }
         }
-        let names = found.words.iter().map(|word| word.text(system)).collect();
+        let names = found.lie_derivatives.iter().map(|word| word.text(system)).collect();
         Ok(NamedRows { names, entries: found.entries(), order: Some(found.order) })
     }
 }

@@ -124,7 +124,7 @@ pub(super) struct Search {
 const LONGEST_TURN: usize = 2048;
 /// So many minors are tried on a box.
 const TRIES: usize = 3;
-/// With so many open boxes a search ends: what is left would fill the memory (some 150 bytes each).
+/// With this many open boxes a search ends: more would fill the memory (some 150 bytes each).
 const MOST_OPEN: usize = 6_000_000;
 
 impl Search {
@@ -174,8 +174,8 @@ impl Search {
         self.kept.truncate(self.most_kept);
     }
 
-    /// Looks at the boxes of a turn, the oldest first, at most so many. Returns what is left of the turn. Where `keep_all`, whoever calls
-    /// it sorts and forgets proved boxes beyond those that are kept.
+    /// Examines at most so many boxes of a turn, the oldest first. Returns the rest of the turn. With `keep_all`, the caller
+    /// sorts and forgets proved boxes beyond those that are kept.
     ///
     /// # Errors
     /// An interrupt came before the last of these boxes was begun: all of them are open as they were, and nothing is counted.

@@ -75,7 +75,7 @@ impl Region {
 
     /// Of the open boxes the share of a number, counted from one; nothing else is searched from here on.
     ///
-    /// Returns what [`Region::part`] has to be told.
+    /// Returns the number that [`Region::part_text`] needs.
     pub fn take_share(&mut self, number: u64, of: u64) -> u64 {
         let base = self.standing_sum();
         for search in &mut self.searches.searches {
@@ -86,7 +86,7 @@ impl Region {
         base
     }
 
-    /// What has come of a share, as text; it tells no times.
+    /// The result of a share, as text; it contains no times.
     pub fn part_text(&self, base: u64, number: u64, of: u64) -> String {
         let question = self.fingerprint();
         let mut text = format!("{FORMAT}\nquestion {question:016x} {base:016x} {number} {of}\n");
@@ -154,7 +154,7 @@ impl Region {
                 search.append(found);
             }
         }
-        // as a search to a depth leaves them
+        // in the order of a search to a depth
         merged.sort();
         self.searches = merged;
         Ok(())

@@ -52,7 +52,7 @@ impl Asked<'_> {
             }
             return Ok(found);
         }
-        // boxes are slow where they cannot tell
+        // boxes are slow where they cannot decide
         let by_boxes = matches!(self.question, Question::Relations { .. });
         if by_boxes && let Some(found) = self.proved_by_signs(system, branch, &guards, kept, rng)? {
             return Ok(found);
@@ -175,9 +175,9 @@ impl Asked<'_> {
             Question::Codistribution { claimed } => {
                 decide_codistribution(system, &on, branch, *claimed, rng)?
             }
-            Question::Visible { is_seen, .. } => {
+            Question::Visible { is_observable, .. } => {
                 let resolved = on_resolved(system, &on, cell, rng)?;
-                return decide_visible(system, resolved.as_ref().unwrap_or(&on), *is_seen, kept, rng);
+                return decide_visible(system, resolved.as_ref().unwrap_or(&on), *is_observable, kept, rng);
             }
         };
         let mut evidence = Vec::new();

@@ -1,4 +1,4 @@
-//! Branches taken apart by the signs of what absolute values are taken of.
+//! Branches divided by the signs of the arguments of absolute values.
 
 use super::question::Question;
 use super::terms::{OnBranch, Terms};
@@ -17,7 +17,7 @@ pub(super) struct BranchCell {
 /// The parts of a branch, one without signs where nothing depends on them.
 ///
 /// # Errors
-/// In words, where there are too many, or a term tells apart what the conditions leave open.
+/// In words, where there are too many, or a term distinguishes values that the conditions leave open.
 pub(super) fn cells(
     system: &mut System,
     question: &Question,

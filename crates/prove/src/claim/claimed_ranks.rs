@@ -7,9 +7,9 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ClaimedRanks {
     pub least: usize,
-    /// The greatest number there is where nothing is said.
+    /// `usize::MAX` where no upper bound is claimed.
     pub most: usize,
-    /// Whether bounds are claimed and no equation, be there one number between them or several.
+    /// Whether bounds are claimed and no equation, whether they allow one number or several.
     pub are_bounds: bool,
 }
 
@@ -21,7 +21,7 @@ impl ClaimedRanks {
     /// What `rank RELATION number` says; of several, what all of them do.
     ///
     /// # Errors
-    /// In words, where no rank is so.
+    /// In words, where no rank satisfies the relations.
     pub fn of(relations: &[(Relation, i64)]) -> Result<ClaimedRanks, String> {
         let (mut least, mut most) = (0, i64::MAX);
         for (relation, number) in relations {
@@ -53,7 +53,7 @@ impl ClaimedRanks {
         (self.least..=self.most).contains(&rank)
     }
 
-    /// Whether it holds of all of these ranks, or of none.
+    /// Whether the claim holds for all of these ranks, or for none of them.
     pub fn stays(self, ranks: std::ops::RangeInclusive<usize>) -> bool {
         let (first, last) = (*ranks.start(), *ranks.end());
         let holds_of_all = self.least <= first && last <= self.most;

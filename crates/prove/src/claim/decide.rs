@@ -28,8 +28,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// Decides all claims of a system, in the order of the file, as [`decide_all`] does with the seed 1: nobody waits and nothing
-/// stops it.
+/// Decides all claims of a system, in the order of the file, as [`decide_all`] does with the seed 1 and without an
+/// interrupt.
 pub fn prove(system: &System) -> Vec<Outcome> {
     decide_all(system, 1, &UNINTERRUPTED, &|_| ())
 }
@@ -45,7 +45,7 @@ pub fn decide_all(
     decide_all_keeping(Kept::Verdicts, system, seed, interrupt, done)
 }
 
-/// The same, and what the verdicts rest on is kept if it is to be.
+/// The same; also keeps what the verdicts rest on if asked to.
 pub fn decide_all_keeping(
     kept: Kept,
     system: &System,
@@ -82,7 +82,7 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
     decide_apart(system.clone(), (system, claim), seed, Kept::Verdicts).0
 }
 
-/// Decides one claim in a copy of its system, which is given back unless the decision has panicked: nobody knows what is left of it then.
+/// Decides one claim in a copy of its system, which is given back unless the decision has panicked: its state is unknown then.
 fn decide_apart(
     mut copy: System,
     (system, claim): (&System, &ClaimSyntax),
@@ -323,7 +323,7 @@ fn attempt(
         // every Lie derivative of the outputs has to exist
         guards.extend(system.smooth_guards(&system.moving_fields()));
     }
-    // a rank is that at the beginning, where some values are known
+    // a rank holds at the initial state, where some values are known
     let mut at_first = None;
     if of_rank && !system.initial_conditions().is_empty() {
         let initial = system.initial_conditions().iter().cloned();

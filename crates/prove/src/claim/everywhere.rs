@@ -40,7 +40,7 @@ pub(super) struct DecidedEverywhere {
 /// Reads a claim about a rank at all states but those of some sets.
 ///
 /// # Errors
-/// In words, where it is none.
+/// In words, where the statement is no such claim.
 pub(super) fn read(
     system: &mut System,
     statement: &Statement,
@@ -236,7 +236,7 @@ fn on_the_cases(
         Some(_) => rows(system, claim),
         None => (Vec::new(), system.unknown_count(), Vec::new(), system.column_names()),
     };
-    let StatesOfCases { words, entries, states } = examples;
+    let StatesOfCases { row_names: words, entries, states } = examples;
     let mut found = match ranks_at(system, claim, (entries, width, words, columns), &states, rng) {
         Ok(found) => found,
         Err(missing) => return Some(Evidence::Unchecked(format!("it could not be written down: {missing}"))),
@@ -290,7 +290,7 @@ fn ranks_at(
     let requirements = requirements.collect::<Result<_, _>>()?;
     Ok(CertifiedRank {
         columns,
-        words,
+        row_names: words,
         rows: places,
         conditions,
         requirements,
@@ -299,7 +299,7 @@ fn ranks_at(
     })
 }
 
-/// All rows of the matrix, or those of the words that were taken.
+/// All rows of the matrix, or those of the Lie derivatives that were taken.
 fn rows(system: &mut System, claim: &ClaimedEverywhere) -> NamedRows {
     let numbered = |what: &str, count: usize| (1..=count).map(|n| format!("{what} {n}")).collect();
     match &claim.matrix {

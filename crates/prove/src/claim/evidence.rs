@@ -17,7 +17,7 @@ use rand::Rng;
 const STATES: usize = 100;
 /// So many states are looked at for the largest minor,
 const MINORS: usize = 8;
-/// and so many where none of them shows what is said: at simple numbers parameters are often equal, and ranks lower.
+/// and so many where none of them shows the claim: at simple numbers parameters are often equal, and ranks lower.
 const MORE_MINORS: usize = 80;
 /// The work that the check of one refutation may take.
 const WORK: u64 = 1 << 28;
@@ -113,7 +113,7 @@ pub(super) fn identity(
     }
     let stated = |state| on.at(system, state, &terms).identity(engine, log2_error, None);
     let agrees = |stated: &StatedIdentity| match stated.check(1, &Effort::new(WORK)) {
-        // where the sides differ the checker has found a proof that is wrong, and that is to be seen
+        // where the sides differ the checker has found a proof that is wrong, which must be reported
         Finding::NotConfirmed(doubt) => doubt == Doubt::Differ,
         _ => true,
     };
@@ -128,8 +128,8 @@ pub(super) fn identity(
     }
 }
 
-/// A proof for the checker, unless it does not know at the very state what the proof takes for granted there: that says nothing
-/// against it, and could not be told from a fault later on.
+/// A proof for the checker, unless the checker cannot confirm at the very state what the proof takes for granted there: that is
+/// no argument against the proof, and could not be distinguished from a fault later on.
 fn as_far_as_it_can_be_told(stated: StatedIdentity) -> Evidence {
     match stated.check(1, &Effort::new(WORK)) {
         Finding::NotConfirmed(
@@ -195,7 +195,7 @@ pub(super) struct RankedMatrix {
     /// By rows.
     pub entries: Vec<NodeId>,
     pub columns: Vec<String>,
-    pub words: Vec<String>,
+    pub row_names: Vec<String>,
     pub claimed: usize,
 }
 
@@ -207,7 +207,7 @@ impl RankedMatrix {
         RankedMatrix {
             entries: entries.to_vec(),
             columns: numbered("column", width),
-            words: numbered("row", height),
+            row_names: numbered("row", height),
             claimed,
         }
     }
@@ -215,8 +215,8 @@ impl RankedMatrix {
     /// The observability codistribution on a branch.
     ///
     /// # Errors
-    /// In words, where there are no words, or those that are short enough do not show the rank that is claimed: they say nothing
-    /// against it.
+    /// In words, where there are no Lie derivatives, or those that are short enough have a lower rank than claimed: that does not
+    /// refute the claim.
     pub fn codistribution(system: &mut System, branch: &Branch, claimed: usize) -> Result<Self, String> {
         let words = Codistribution::new(system, &branch.values, Length::UntilItStops)
             .map_err(|why| why.to_string())?;
@@ -227,7 +227,7 @@ impl RankedMatrix {
         Ok(RankedMatrix {
             entries: words.entries(),
             columns: system.unknowns().iter().map(|state| system.symbol_name(*state).to_owned()).collect(),
-            words: words.words.iter().map(|word| word.text(system)).collect(),
+            row_names: words.lie_derivatives.iter().map(|word| word.text(system)).collect(),
             claimed,
         })
     }
@@ -257,7 +257,7 @@ pub(super) fn claimed_rank(
     let program = Program::new(&system.graph, &expanded, is_angle);
     let field = PrimeField::random(rng);
     let width = matrix.columns.len();
-    let most = width.min(matrix.words.len());
+    let most = width.min(matrix.row_names.len());
     let mut best: Option<(Point, Minor)> = None;
     for attempt in 0..MORE_MINORS {
         let known = best.as_ref().map(|(_, known)| known.rows.len());
@@ -318,7 +318,7 @@ pub(super) fn listed_rank(
     Ok(CertifiedRank {
         requirements: requirements.collect::<Result<_, _>>()?,
         columns: matrix.columns.clone(),
-        words: matrix.words.clone(),
+        row_names: matrix.row_names.clone(),
         rows,
         conditions,
         listing: lowering.finish(),

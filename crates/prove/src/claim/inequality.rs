@@ -169,8 +169,8 @@ fn one(system: &mut System, on: &OnBranch, entry: usize, given: Given<'_>, rng: 
     }
 }
 
-/// The refutation at an irrational value of a symbol. A zero of degree two is a number that the checker knows; of any other one its polynomial
-/// is told, and between what it lies.
+/// The refutation at an irrational value of a symbol. A zero of degree two is a number that the checker knows; for any other one the
+/// witness gives its polynomial and an isolating interval.
 fn at_irrational(
     system: &mut System,
     on: &OnBranch,
@@ -260,7 +260,7 @@ fn sides_near(
             .unwrap_or_else(|| round_to_decimal(&((value.low() + value.high()) / RBig::from(2)), SHOWN))
     };
     let texts = [text(&values[0]), text(&values[1])];
-    // two sides that are equal are told by the one that is known to more digits
+    // two equal sides are written as the one that is known to more digits
     Some(match (place.touches, values[1].is_exact()) {
         (false, _) => texts,
         (true, exact) => [texts[usize::from(exact)].clone(), texts[usize::from(exact)].clone()],

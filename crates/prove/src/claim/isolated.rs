@@ -1,7 +1,7 @@
 //! What ends a decision from inside costs what was being decided, and nothing else. An unexpected panic: the claim is *undecided*, which no
 //! file can expect then, and all others are decided as if nothing had happened. And a budget that is used up: every claim has the same
 //! one, from which all engines are paid that are asked about it, so that none takes longer or more memory than that, however they call
-//! each other. An engine that gives up earlier, by a share of its own, leaves the others something.
+//! each other. An engine that gives up earlier, at a share of its own, leaves budget for the others.
 //!
 //! What was worked on is given away with the work, so that nothing half done is met afterwards.
 
@@ -77,7 +77,7 @@ fn listen() {
     });
 }
 
-/// The file and the line of this program; of what it is built with no more is told than nothing.
+/// The file and the line if they are in this program; `None` for a dependency.
 fn place(panic: &PanicHookInfo<'_>) -> Option<String> {
     let location = panic.location()?;
     let is_ours = std::path::Path::new(location.file()).is_relative();
@@ -258,7 +258,7 @@ mod tests {
         assert_eq!(one, on(4));
     }
 
-    /// Also where a part of the work was given to other threads; and text of a file is told in one line.
+    /// Also where a part of the work was given to other threads; and text of a file is printed in one line.
     #[test]
     fn panics_of_other_threads_are_told() {
         use rayon::prelude::*;

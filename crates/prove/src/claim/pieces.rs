@@ -1,4 +1,4 @@
-//! The set that a claim about almost all states speaks of, piece by piece: inequalities and domains may leave of a branch an edge only, or
+//! The set that a claim about almost all states speaks of, piece by piece: inequalities and domains may reduce a branch to an edge, or to
 //! edges beside an open part of it, and what is said of a set is said of each of its components.
 //!
 //! A piece of fewer dimensions than those around it is no component of its own where it lies in their closure. That is so where the conditions
@@ -237,7 +237,7 @@ fn add(
     open.extend(all.into_iter().rev());
 }
 
-/// Whether almost all states of a piece, and so all, lie in the closure of what is left of the set without it.
+/// Whether almost all states of a piece, and so all, lie in the closure of the rest of the set.
 fn lies_in_the_closure(system: &mut System, piece: &Piece, rng: &mut ChaCha8Rng) -> bool {
     // what ties outputs to zero holds with all derivatives along the drift, which are not among the equations
     let is_thinner = piece.branch.values.len() > piece.equations.len();

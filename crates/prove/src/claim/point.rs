@@ -31,10 +31,10 @@ pub enum EvaluationError {
     /// The expression cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// It has no value here, or none that can be told.
+    /// It has no value here, or none that can be determined.
     #[error(transparent)]
     Value(#[from] ValueError),
-    /// It is nothing that has a value at a point; in words, what it is.
+    /// An expression of a kind that has no value at a point; the kind, as text.
     #[error("{0} has no value at a point")]
     NoValue(String),
     /// The entries of a matrix are not rational here, and a rank is decided in rational numbers.

@@ -26,7 +26,7 @@ pub enum PoleOrder {
         /// The argument that it is not less fails with at most this probability, as a power of two.
         log2_error: f64,
     },
-    /// What was in the way.
+    /// Why it is not known.
     Unknown(String),
 }
 
@@ -43,7 +43,7 @@ struct Approach {
     by_angle: bool,
 }
 
-/// The order of the pole of `expression` where `factor` vanishes. Symbols in `point` are held at rational values
+/// The order of the pole of `expression` where `factor` vanishes. Symbols in `point` are fixed at rational values
 /// (angles in radians); all others are generic.
 pub fn pole_order(
     system: &mut System,

@@ -1,4 +1,4 @@
-//! What a statement asks, once its sides are read.
+//! The question that a statement asks, once its sides are read.
 
 use super::claimed_ranks::ClaimedRanks;
 use super::evidence::{RankedMatrix, claimed_rank, identity};
@@ -23,8 +23,8 @@ pub(super) enum Question {
     Rank { entries: Vec<NodeId>, columns: usize, claimed: ClaimedRanks },
     /// Has the observability codistribution this rank?
     Codistribution { claimed: ClaimedRanks },
-    /// Are these functions of what is measured, all of them, or is none?
-    Visible { functions: Vec<NodeId>, is_seen: bool },
+    /// Are all these functions observable, or is none of them?
+    Visible { functions: Vec<NodeId>, is_observable: bool },
 }
 
 impl Question {
@@ -86,7 +86,7 @@ impl Question {
         matches!(self, Question::Rank { .. } | Question::Codistribution { .. } | Question::Visible { .. })
     }
 
-    /// How each left side is claimed to stand to its right one; none where all are equations.
+    /// The relation between each left side and its right one; empty where all are equations.
     pub fn all_relations(&self) -> &[Relation] {
         match self {
             Question::Relations { relations, .. } => relations,
@@ -110,7 +110,9 @@ impl Question {
             (Value::CodistributionRank, Value::Scalar(r)) | (Value::Scalar(r), Value::CodistributionRank) => {
                 Ok(Question::Codistribution { claimed: claimed(r)? })
             }
-            (Value::Visible { functions, is_seen }, _) => Ok(Question::Visible { functions, is_seen }),
+            (Value::Visible { functions, is_observable }, _) => {
+                Ok(Question::Visible { functions, is_observable })
+            }
             (l, r) => Err(format!("{} is compared with {}", l.describe(), r.describe())),
         }
     }

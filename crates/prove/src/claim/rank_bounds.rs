@@ -1,4 +1,4 @@
-//! Ranks of rows in which functions are met: no more than what the functions are known to satisfy leaves, no less than at a state.
+//! Bounds on ranks of rows with functions: from above by the known relations between the functions, from below at a state.
 
 use super::claimed_ranks::ClaimedRanks;
 use super::rank_witness::best_state;
@@ -105,7 +105,7 @@ pub(super) fn by_bounds(
     ))
 }
 
-/// Whether it can be read off that the states at which all guards hold are a convex set, and so one component.
+/// Whether the guards show that the states at which they all hold are a convex set, and so one component.
 fn is_convex(system: &mut System, guards: &[Guard]) -> bool {
     let is_angle = &system.angle_test();
     guards.iter().all(|guard| match guard.need {

@@ -1,4 +1,4 @@
-//! A state in exact numbers at which a matrix has not the rank that was claimed.
+//! A state in exact numbers at which a matrix does not have the claimed rank.
 
 use super::claimed_ranks::ClaimedRanks;
 use super::terms::{OnBranch, Point, Values};
@@ -6,7 +6,7 @@ use super::verdict::{Verdict, Witness};
 use dashu::rational::RBig;
 use palmistry_lang::System;
 use palmistry_math::number::{Enclosure, Enclosures, PrimeField, Rationals, rational_to_f64};
-use palmistry_rank::observability::{Coordinate, Defined, Probe, StateInWords, certain_rank, rank};
+use palmistry_rank::observability::{Coordinate, Defined, Probe, WrittenState, certain_rank, rank};
 use rand::Rng;
 
 /// The bits of the elimination in enclosures.
@@ -14,7 +14,7 @@ const BITS: usize = 400;
 /// How many states are tried.
 const ATTEMPTS: usize = 60;
 
-/// The rank at almost all states, and what was claimed of it, which it is not.
+/// The rank at almost all states, and the claim about it, which it does not meet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ranks {
     pub generic: usize,
@@ -33,7 +33,7 @@ impl Ranks {
         }
     }
 
-    fn at(self, state: StateInWords) -> Witness {
+    fn at(self, state: WrittenState) -> Witness {
         Witness {
             state,
             left: self.generic.to_string(),
@@ -86,7 +86,7 @@ pub(super) fn best_state(
     columns: usize,
     most: usize,
     rng: &mut impl Rng,
-) -> Option<(usize, StateInWords)> {
+) -> Option<(usize, WrittenState)> {
     let mut best = None;
     for attempt in 0..ATTEMPTS {
         let point = on.draw(system, attempt, rng);

@@ -14,7 +14,7 @@ use rand::Rng;
 /// A nonzero minor, the certain half of a statement about a rank.
 const MINOR: &str = "a minor that is not zero modulo a prime";
 
-/// The same of the differentials of derivatives along a trajectory, and the other half.
+/// The same for the differentials of derivatives along a trajectory; [`SERIES`] is the other half.
 pub(super) const MINOR_OF_SERIES: &str =
     "a minor of the differentials of power series that is not zero modulo a prime";
 pub(super) const SERIES: &str = "power series at random points of random prime fields";
@@ -37,7 +37,7 @@ pub(crate) fn decide_rank(
 /// Decides `rank = claimed`, or a bound of it, for the codistribution, on the states of a branch.
 ///
 /// # Errors
-/// In words: there is no codistribution, or it tells apart what the conditions leave open.
+/// In words: there is no codistribution, or it distinguishes values that the conditions leave open.
 pub(crate) fn decide_codistribution(
     system: &mut System,
     on: &OnBranch,
@@ -55,10 +55,10 @@ pub(crate) fn decide_codistribution(
     }
     let frame = Frame::new(system, &branch.values)?;
     if let Some(rank) = frame.generic.rank()
-        && !frame.words_are_short(system)
+        && !frame.lie_derivatives_are_short(system)
     {
         let log2_error = frame.generic.log2_error;
-        // the words are too long to be written down
+        // the Lie derivatives are too long to be written down
         let witness = |ranks| series_witness(system, on, ranks, rng);
         return Ok(on_one_branch(exists, || by_series(rank, claimed, log2_error, witness)));
     }
@@ -71,7 +71,7 @@ pub(crate) fn decide_codistribution(
     if let Some(rank) = words.generic.rank()
         && (words.guessed || rank > found)
     {
-        // no words were written down that show it, or it is not known of them: the series are
+        // the Lie derivatives that were written down do not show it, or are not known to: the series are used
         let log2_error = words.generic.log2_error;
         let witness = |ranks| {
             let found = rank_witness(system, &needed, columns, ranks, rng);
@@ -113,7 +113,7 @@ pub(super) fn on_one_branch(exists: Existence, verdict: impl FnOnce() -> Verdict
     }
 }
 
-/// What is known of the rank without words; where it is another one, a state at which the words show it, if they do.
+/// The rank by power series alone; if it is not the claimed one, a state at which it is shown, if one is found.
 fn by_series(
     rank: usize,
     claimed: ClaimedRanks,

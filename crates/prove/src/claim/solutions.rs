@@ -1,9 +1,8 @@
 //! Claims about how many values give the same outputs: `solutions(k) = 2`, `solutions(x*y) = 1`, `solutions(b) = infinity`.
 //!
-//! *Proved* are a number that random points modulo random primes bound from above with an error below `2^-100` and a symmetry, or nothing
-//! at all where it is one, from below; and infinitely many, where the rank grows with the expression as an output. A number
-//! that is only computed
-//! leaves the claim undecided, and stands in its remark.
+//! *Proved* are a number that is bounded from above by random points modulo random primes, with an error below `2^-100`, and
+//! from below by a symmetry (a bound of one needs none); and infinity, where the rank grows with the expression as an
+//! output. A number that is only computed leaves the claim undecided and is given in its remark.
 
 use super::question::claimed_integer;
 use super::verdict::{Verdict, Witness};
@@ -21,11 +20,11 @@ const WORK: u64 = 2_000_000_000;
 const BASES: &str = "Groebner bases at random points of random prime fields";
 const SERIES: &str = "power series at random points of random prime fields";
 
-/// What is claimed: how the number of values of an expression stands to a number.
+/// The claim: how the number of values of an expression compares with a number.
 pub(super) struct Asking {
     expression: NodeId,
     relation: Relation,
-    /// Nothing where it is infinity.
+    /// `None` for infinity.
     claimed: Option<usize>,
     /// Whether the expression stands on the left.
     pub is_left: bool,
@@ -58,7 +57,7 @@ impl Asking {
         Some(claimed.map(|claimed| Asking { expression, relation, claimed, is_left }))
     }
 
-    /// Whether it holds of all numbers between two, or of none; infinity is the greatest.
+    /// Whether the claim holds for all numbers between two (`true`) or for none; infinity is the greatest.
     fn holds(&self, least: usize, most: usize) -> Option<bool> {
         let claimed = self.claimed.unwrap_or(usize::MAX);
         let (always, never) = match self.relation {
@@ -94,7 +93,7 @@ struct Proved {
 /// Decides such a claim.
 ///
 /// # Errors
-/// In words, where it is out of reach.
+/// In words, where the number cannot be computed.
 pub(super) fn decide_solutions(
     system: &mut System,
     statement: &Statement,

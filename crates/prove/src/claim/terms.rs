@@ -6,7 +6,7 @@ use palmistry_lang::{Assignment, Kind, System};
 use palmistry_math::expression::syntax::Relation;
 use palmistry_math::expression::{Guard, Need, NodeId, Program, Symbol, expand_angles};
 use palmistry_math::number::{Enclosure, Enclosures, Function, Interval, Rationals, rational_from_f64};
-use palmistry_rank::observability::{Branch, Coordinate, NamedCoordinate, State, StateInWords};
+use palmistry_rank::observability::{Branch, Coordinate, NamedCoordinate, State, WrittenState};
 use rand::{Rng, RngExt};
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ const EXACT_BITS: usize = 1 << 16;
 pub(crate) struct Terms {
     /// The entries of the left side, then those of the right.
     pub sides: Vec<NodeId>,
-    /// How each entry of the left is claimed to stand to that of the right; none where all are equations.
+    /// The relation claimed between each entry of the left and that of the right; empty where all are equations.
     pub relations: Vec<Relation>,
     pub guards: Vec<Guard>,
     /// Left sides less right sides of the conditions.
@@ -86,7 +86,7 @@ impl OnBranch {
     /// The terms of a statement on a branch.
     ///
     /// # Errors
-    /// In words, where a term tells apart what the conditions leave open.
+    /// In words, where a term distinguishes values that the conditions leave open.
     pub fn new(system: &mut System, branch: &Branch, statement: &Terms) -> Result<OnBranch, String> {
         let sides = branch.put_in(system, &statement.sides)?;
         let nodes: Vec<NodeId> = statement.guards.iter().map(|guard| guard.node).collect();
@@ -102,7 +102,7 @@ impl OnBranch {
         let all = || statement.sides.iter().chain(&nodes).chain(&statement.conditions).chain(&values);
         let mut free = system.graph.symbols_of(all().copied());
         free.retain(|symbol| !branch.values.contains_key(symbol));
-        // a guard may ask for more than sine and cosine tell, as that an angle is less than one: enclosures answer that
+        // a guard may need more than sine and cosine determine, as that an angle is less than one: enclosures decide that
         let there = || statement.sides.iter().chain(&statement.conditions).chain(&values);
         let bounds = bounds(&mut system.graph, &here.guards);
         // points of the circle stand for angles between minus pi and pi
@@ -227,7 +227,7 @@ impl OnBranch {
     }
 
     /// The point in words: every symbol that the statement or its conditions mention.
-    pub fn describe(&self, system: &System, point: &Point) -> StateInWords {
+    pub fn describe(&self, system: &System, point: &Point) -> WrittenState {
         let mut all: BTreeMap<Symbol, (String, f64)> = BTreeMap::new();
         for (symbol, value) in &point.state.values {
             all.insert(*symbol, (value.exact_text(), value.to_f64()));

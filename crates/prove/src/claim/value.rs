@@ -3,7 +3,7 @@
 use dashu::rational::RBig;
 use palmistry_math::expression::{Failure, Graph, Guard, Input, Need, Node, NodeId, Program, Symbol};
 use palmistry_math::number::{
-    Arithmetic, DoubleDouble, Enclosure, Enclosures, Floats, Interval, Rationals, Refusal, Rung,
+    Arithmetic, DoubleDouble, Enclosure, Enclosures, Floats, Interval, NumberType, Rationals, Refusal,
     common_decimal, rational_from_f64, round_to_decimal,
 };
 use palmistry_rank::sweep::Certainty;
@@ -16,14 +16,14 @@ pub struct PointValue {
     pub decimal: String,
     /// The value itself, where it is rational and was computed exactly.
     pub exact: Option<RBig>,
-    /// Whether all digits are certain, or two rungs of the ladder agree on them.
+    /// Whether all digits are certain, or two number types agree on them.
     pub certainty: Certainty,
     /// The numbers that sufficed.
-    pub rung: Rung,
+    pub number_type: NumberType,
     /// How wide the interval is that encloses the value, both ends of which round to the decimal, to two digits; zero where the value is
     /// known exactly. Nothing where no interval was needed: two kinds of numbers that round agree.
     pub width: Option<String>,
-    /// How many rungs had been tried before and did not suffice.
+    /// How many number types had been tried before and did not suffice.
     pub climbed: usize,
 }
 
@@ -37,20 +37,20 @@ pub enum ValueError {
     /// A divisor is zero.
     #[error("division by zero: {0} = 0 at this point")]
     Pole(String),
-    /// A divisor could not be told from zero.
+    /// A divisor could not be distinguished from zero.
     #[error(
         "{divisor} cannot be distinguished from zero with {bits} bits: the point is a pole, or very near to one"
     )]
     NearPole { divisor: String, bits: usize },
-    /// The value could not be told from zero, nor be proved to be zero.
+    /// The value could not be distinguished from zero, nor be proved to be zero.
     #[error(
         "the value is smaller than {bound} in magnitude: with {bits} bits it could neither be distinguished from zero nor be proved to be zero"
     )]
     PerhapsZero { bound: String, bits: usize },
-    /// The value could not be told from the middle between two decimals.
+    /// The value could not be distinguished from the middle between two decimals.
     #[error("the value is near {near}, and with {bits} bits could not be fixed to more digits")]
     NotSeparated { near: String, bits: usize },
-    /// An argument could not be told from one outside a function's domain.
+    /// An argument could not be distinguished from one outside a function's domain.
     #[error("{why}, in {term}: with {bits} bits the point is at the edge of the domain, or very near to it")]
     NearEdge { why: String, term: String, bits: usize },
     /// A value on the way is beyond what can be held, at this precision.
@@ -67,7 +67,7 @@ pub enum ValueError {
 /// Up to so many decimal digits doubles are tried.
 const DIGITS_OF_A_DOUBLE: usize = 15;
 
-/// So many bits are tried before a value that nothing separates from zero, from a pole or from the edge of a domain is
+/// So many bits are tried before a value that is not separated from zero, from a pole or from the edge of a domain is
 /// given up; for more digits than these hold, twice the bits that they need.
 const MOST_BITS: usize = 1 << 12;
 
@@ -114,7 +114,7 @@ fn undefined(graph: &Graph, failure: &Failure, bits: usize) -> ValueError {
 /// Encloses a value with the given precision.
 ///
 /// # Errors
-/// Where it is not defined, or cannot be told from undefined at this precision.
+/// Where it is not defined, or cannot be distinguished from undefined at this precision.
 pub(crate) fn enclose(
     graph: &Graph,
     program: &Program,
@@ -169,7 +169,7 @@ fn zero_factor(graph: &Graph, divisor: NodeId, values: &HashMap<Symbol, RBig>) -
 /// Whether a term whose guards these are exists at a point given by rational numbers (angles in radians).
 ///
 /// # Errors
-/// Where it does not, and why; or where 4096 bits cannot tell.
+/// Where it does not, and why; or where 4096 bits do not decide it.
 pub fn exists_at(graph: &Graph, guards: &[Guard], values: &HashMap<Symbol, RBig>) -> Result<(), ValueError> {
     for guard in guards.iter().filter(|guard| guard.is_obvious(graph) != Some(true)) {
         let program = Program::plain(graph, &[guard.node]);
@@ -214,7 +214,7 @@ pub fn exists_at(graph: &Graph, guards: &[Guard], values: &HashMap<Symbol, RBig>
 ///
 /// # Errors
 /// Where the point lacks a value, is a pole, or lies outside a function's domain; or where 4096 bits, or twice those of
-/// the digits, cannot tell.
+/// the digits, do not decide.
 pub fn certified_value(
     graph: &Graph,
     expression: NodeId,
@@ -223,9 +223,9 @@ pub fn certified_value(
 ) -> Result<PointValue, ValueError> {
     let program = Program::plain(graph, &[expression]);
     let mut climbed = 0;
-    let found = |decimal, exact, (rung, width), climbed| {
+    let found = |decimal, exact, (number_type, width), climbed| {
         let (certainty, width) = (Certainty::Certified, Some(round_to_decimal(&width, 2)));
-        Ok(PointValue { decimal, exact, certainty, rung, width, climbed })
+        Ok(PointValue { decimal, exact, certainty, number_type, width, climbed })
     };
     if digits <= DIGITS_OF_A_DOUBLE {
         let interval = evaluate(graph, &program, values, Floats::<Interval>::new())?;
@@ -236,12 +236,17 @@ pub fn certified_value(
         {
             let width = &high - &low;
             let exact = width.is_zero().then_some(low);
-            return found(decimal, exact, (Rung::Intervals, width), climbed);
+            return found(decimal, exact, (NumberType::Intervals, width), climbed);
         }
         climbed += 1;
     }
     if let Some(value) = evaluate(graph, &program, values, Rationals::default())? {
-        return found(round_to_decimal(&value, digits), Some(value), (Rung::Exact, RBig::ZERO), climbed);
+        return found(
+            round_to_decimal(&value, digits),
+            Some(value),
+            (NumberType::Exact, RBig::ZERO),
+            climbed,
+        );
     }
     let mut bits = bits_of(digits);
     let most = MOST_BITS.max(2 * bits);
@@ -250,7 +255,7 @@ pub fn certified_value(
             Ok(enclosure) => match enclosure[0].decimal(digits) {
                 Some(decimal) => {
                     let width = enclosure[0].high() - enclosure[0].low();
-                    return found(decimal, None, (Rung::Enclosures(bits), width), climbed);
+                    return found(decimal, None, (NumberType::Enclosures(bits), width), climbed);
                 }
                 None if enclosure[0].contains_zero() => {
                     let bound = round_to_decimal(&enclosure[0].high().max(-enclosure[0].low()), 2);
@@ -272,7 +277,7 @@ pub fn certified_value(
     }
 }
 
-/// The value of an expression at a point to `digits` significant decimal digits, as far as two rungs of the ladder
+/// The value of an expression at a point to `digits` significant decimal digits, as far as two number types
 /// agree on them: doubles and double-doubles, both of whose values, rounded from all that they hold, are that decimal.
 /// Where these do not agree, or where more digits are wanted, it is taken from [`certified_value`]. So is a zero: that
 /// two roundings end at zero says nothing of its digits.
@@ -296,8 +301,8 @@ pub fn computed_value(
             && let Some(decimal) = common_decimal(&rough, &fine, digits)
         {
             let certainty = Certainty::Computed;
-            let (exact, width, rung) = (None, None, Rung::DoubleDoubles);
-            return Ok(PointValue { decimal, exact, certainty, rung, width, climbed });
+            let (exact, width, number_type) = (None, None, NumberType::DoubleDoubles);
+            return Ok(PointValue { decimal, exact, certainty, number_type, width, climbed });
         }
         climbed = 1;
     }

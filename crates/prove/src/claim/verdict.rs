@@ -1,22 +1,22 @@
-//! What a claim can come to.
+//! The possible outcomes of a claim.
 
 use dashu::rational::RBig;
 use palmistry_checker::{Refutation, VerdictRecord};
 use palmistry_lang::{Basis, Expectation, FieldRole, Flaw, Looks};
-use palmistry_rank::observability::StateInWords;
+use palmistry_rank::observability::WrittenState;
 
 /// A state in exact numbers at which a statement fails.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Witness {
     /// Name, exact value, and the nearest double, of everything that the statement mentions.
-    pub state: StateInWords,
+    pub state: WrittenState,
     /// The value of the left side: exact where it is rational and short, else to many certified digits.
     pub left: String,
     /// The value of the right side.
     pub right: String,
     /// Which entry differs, where matrices were compared: row and column, counted from one.
     pub entry: Option<(usize, usize)>,
-    /// What the checker needs to find it again, and did; of an equation.
+    /// What the checker needs to find it again, and has confirmed; for an equation only.
     pub refutation: Option<Box<Refutation>>,
 }
 
@@ -42,7 +42,7 @@ pub enum Verdict {
         /// In words.
         text: String,
     },
-    /// Neither; what was tried.
+    /// Neither; the reason.
     Undecided {
         /// In words.
         why: String,
@@ -74,7 +74,7 @@ impl Verdict {
         )
     }
 
-    /// What is known of several statements that are claimed together.
+    /// The verdict on several statements that are claimed together.
     pub(crate) fn all(verdicts: impl IntoIterator<Item = Verdict>) -> Verdict {
         let (mut engine, mut error, mut undecided) = (None, 0.0f64, None);
         for verdict in verdicts {
@@ -121,9 +121,9 @@ pub struct Outcome {
     pub fault: Option<Flaw>,
     /// The form in the text as a statement, and what became of it; of a fault that can be stated.
     pub printed: Option<(String, Verdict)>,
-    /// The words of the text; of a fault where they are quoted.
+    /// The words of the text; for a fault, where they are quoted.
     pub quoted: Option<String>,
-    /// On what a claim rests. One whose sides are one expression restates, whether the file says so or not.
+    /// What a claim rests on. One whose sides are one expression holds by definition, whether the file says so or not.
     pub basis: Basis,
     /// The fault from which this one follows.
     pub follows: Option<String>,
@@ -131,7 +131,7 @@ pub struct Outcome {
     pub passage: Option<String>,
     /// Of a fault, whether a conclusion of the text changes.
     pub conclusion: Option<String>,
-    /// How the names of the statements look, where the file says it.
+    /// How the names of the statements are displayed, where the file says so.
     pub looks: Looks,
     /// The abbreviations that these statements use, those of imported files too: name and meaning, as it is written.
     pub definitions: Vec<(String, String)>,
@@ -151,11 +151,11 @@ pub struct Outcome {
     pub evidence: Vec<VerdictRecord>,
     /// The remark in the file.
     pub remark: Option<String>,
-    /// What the statement comes to at the file's values of its parameters, where that is another word.
+    /// The verdict at the file's values of its parameters, where it is another one.
     pub at_files_values: Option<AtFilesValues>,
     /// The same for the printed form of an erratum.
     pub printed_at_files_values: Option<AtFilesValues>,
-    /// The fields of which words are made, where the claim is about the rank of the codistribution.
+    /// The fields of the Lie derivatives, where the claim is about the rank of the codistribution.
     pub fields: Vec<FieldRole>,
     /// Of a rank at all states: what it is on each of the sets that are left out, in words.
     pub beside: Vec<String>,

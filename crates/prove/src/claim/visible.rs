@@ -1,10 +1,10 @@
 //! Claims about single unknowns and functions of them: `observable(x, a*b)`, `unobservable(k)`.
 //!
-//! A function is seen at almost all states of a set where its differential lies in the span of the differentials of all words there: then
-//! it is, near such a state, a function of what is measured and of its derivatives (R. Hermann and A. J. Krener, *Nonlinear
-//! controllability and observability*, IEEE Trans. Automat. Control 22, 1977). Both halves are a rank: that of the words, and
-//! that of the words with the function's differential. A field along which no output ever changes, and the function does, is the better
-//! proof that it is not seen, and is given where it is found.
+//! A function is observable at almost all states of a set where its differential lies in the span of the differentials of all Lie
+//! derivatives there: near such a state it is a function of the outputs and their derivatives (R. Hermann and A. J. Krener, *Nonlinear
+//! controllability and observability*, IEEE Trans. Automat. Control 22, 1977). Both halves are a rank: that of the Lie derivatives,
+//! and that of the Lie derivatives with the function's differential. A field along which no output changes but the function does is
+//! the better proof that it is unobservable, and is given where it is found.
 
 use super::claimed_ranks::ClaimedRanks;
 use super::evidence::Kept;
@@ -22,7 +22,7 @@ use palmistry_math::expression::{
     zero_by_relations,
 };
 use palmistry_rank::observability::{
-    Branch, Codistribution, Frame, Length, Observability, UnobservableField, unseen_motions,
+    Branch, Codistribution, Frame, Length, Observability, UnobservableField, unobservable_directions,
 };
 use rand_chacha::ChaCha8Rng;
 
@@ -36,14 +36,14 @@ enum Known {
     Open(String),
 }
 
-/// Decides that all sides of the terms are seen, or that none is, on the states of a branch.
+/// Decides that all sides of the terms are observable, or that none is, on the states of a branch.
 ///
 /// # Errors
-/// In words: there is no codistribution, or it tells apart what the conditions leave open.
+/// In words: there is no codistribution, or it distinguishes values that the conditions leave open.
 pub(super) fn decide_visible(
     system: &mut System,
     on: &OnBranch,
-    is_seen: bool,
+    is_observable: bool,
     kept: Kept,
     rng: &mut ChaCha8Rng,
 ) -> Result<(OnOneBranch, Vec<Evidence>), String> {
@@ -68,8 +68,8 @@ pub(super) fn decide_visible(
     let (mut errors, mut open, mut other) = (Vec::new(), Vec::new(), None);
     for (function, known) in functions.iter().zip(known) {
         match known {
-            Known::Seen(error) if is_seen => errors.push(error),
-            Known::Unseen(error) if !is_seen => errors.push(error),
+            Known::Seen(error) if is_observable => errors.push(error),
+            Known::Unseen(error) if !is_observable => errors.push(error),
             Known::Open(why) => open.push(why),
             Known::Seen(_) | Known::Unseen(_) => {
                 other.get_or_insert(*function);
@@ -79,14 +79,14 @@ pub(super) fn decide_visible(
     let mut evidence = Vec::new();
     let verdict = match (other, open.into_iter().next()) {
         (Some(function), _) => {
-            let refuted = Refuted { on, function, is_seen };
+            let refuted = Refuted { on, function, is_observable };
             let (witness, shown) = refuted.witness(system, frame, rng);
             evidence = shown;
             Verdict::Refuted { engine: SERIES.to_owned(), witness }
         }
         (None, Some(why)) => Verdict::undecided(why),
         (None, None) => {
-            let fields = if is_seen { None } else { fields_that_move(system, branch, functions, rng) };
+            let fields = if is_observable { None } else { fields_that_move(system, branch, functions, rng) };
             let log2_error = errors.iter().map(|error| error.exp2()).sum::<f64>().log2();
             let verdict = match &fields {
                 Some(fields) => by_fields(fields),
@@ -97,7 +97,7 @@ pub(super) fn decide_visible(
             };
             if kept == Kept::Evidence {
                 // random numbers of its own: what is kept changes no verdict
-                evidence = proof(system, on, (is_seen, frame), &verdict, &mut rng.clone());
+                evidence = proof(system, on, (is_observable, frame), &verdict, &mut rng.clone());
                 evidence.extend(
                     fields.iter().flatten().map(|field| kept_outputs(system, on, field, &mut rng.clone())),
                 );
@@ -108,13 +108,13 @@ pub(super) fn decide_visible(
     Ok((on_one_branch(exists, || verdict), evidence))
 }
 
-/// What is known of each function, and of the set.
+/// What is known of each function, and the frame for the set.
 fn known(system: &mut System, on: &OnBranch, rng: &mut ChaCha8Rng) -> Result<(Vec<Known>, Frame), String> {
     let values = &on.branch.values;
     let functions = &on.statement.sides;
     let frame = Frame::new(system, values)?;
     let (answer, seen) = frame.functions(system, values, functions);
-    // one bound holds for all that the series tell together
+    // one bound holds for all results of the series together
     let mut joint = Some(answer.log2_error);
     let mut found = Vec::new();
     for (function, seen) in functions.iter().zip(seen) {
@@ -133,7 +133,7 @@ fn known(system: &mut System, on: &OnBranch, rng: &mut ChaCha8Rng) -> Result<(Ve
     Ok((found, frame))
 }
 
-/// The same of one function by the ranks of rows that are written down, where series leave it open.
+/// The same for one function by the ranks of rows that are written down, where series leave it open.
 fn by_rows(
     system: &mut System,
     on: &OnBranch,
@@ -141,7 +141,7 @@ fn by_rows(
     function: NodeId,
     rng: &mut ChaCha8Rng,
 ) -> Result<Known, String> {
-    if !frame.words_are_short(system) {
+    if !frame.lie_derivatives_are_short(system) {
         return Err(open_series(frame));
     }
     let branch = &on.branch;
@@ -181,7 +181,7 @@ fn open_series(frame: &Frame) -> String {
     why.unwrap_or_else(|| "the rank with its differential is not known".to_owned())
 }
 
-/// Unseen fields of which each function is moved by one, those that are needed.
+/// Unobservable directions, as few as needed, such that each function changes along one of them.
 fn fields_that_move(
     system: &mut System,
     branch: &Branch,
@@ -193,7 +193,7 @@ fn fields_that_move(
     if on_a_set || system.time == Time::Discrete || system.unknown_count() > MOST_FOR_FIELDS {
         return None;
     }
-    let found = unseen_motions(system, None, &Default::default(), &Default::default())?;
+    let found = unobservable_directions(system, None, &Default::default(), &Default::default())?;
     let mut needed: Vec<usize> = Vec::new();
     for function in functions {
         let by = (0..found.fields.len()).find(|field| {

@@ -1,5 +1,5 @@
-//! What the checker needs of a claim about what is seen: the words' rank, the ranks with the functions' differentials, and that outputs
-//! stay what they are along an unseen field.
+//! What the checker needs of a claim about observability: the rank of the Lie derivatives, the ranks with the functions'
+//! differentials, and that outputs do not change along an unobservable direction.
 
 use super::evidence::{RankedMatrix, TOO_LONG, claimed_rank, listed_rank};
 use super::terms::{OnBranch, Point, Terms, Values};
@@ -12,7 +12,7 @@ use palmistry_lang::System;
 use palmistry_math::expression::{NodeId, Program, expand_angles, gradient};
 use palmistry_math::number::{PrimeField, Rationals};
 use palmistry_rank::observability::{
-    Codistribution, Frame, Length, StateInWords, UnobservableField, kernel, rank,
+    Codistribution, Frame, Length, UnobservableField, WrittenState, kernel, rank,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -69,14 +69,14 @@ pub(super) fn kept_outputs(
     }
 }
 
-/// The words on the set, as a matrix whose rank is said to be so much; none where they are too long.
+/// The Lie derivatives on the set, as a matrix with its claimed rank; `None` where they are too long.
 fn words(system: &mut System, on: &OnBranch, frame: Frame) -> Option<RankedMatrix> {
-    if !frame.words_are_short(system) {
+    if !frame.lie_derivatives_are_short(system) {
         return None;
     }
     let rank = frame.generic.rank();
     let words = Codistribution::within(system, &on.branch.values, Length::UntilItStops, frame).ok()?;
-    // words that were cut off do not span what is seen
+    // Lie derivatives that were cut off do not span the codistribution
     if rank.is_some_and(|rank| rank != words.generic_rank()) {
         return None;
     }
@@ -84,7 +84,7 @@ fn words(system: &mut System, on: &OnBranch, frame: Frame) -> Option<RankedMatri
         claimed: words.generic_rank(),
         entries: words.entries(),
         columns: system.column_names(),
-        words: words.words.iter().map(|word| word.text(system)).collect(),
+        row_names: words.lie_derivatives.iter().map(|word| word.text(system)).collect(),
     })
 }
 
@@ -98,21 +98,21 @@ fn with_functions(
     let mut all = RankedMatrix {
         entries: words.entries.clone(),
         columns: words.columns.clone(),
-        words: words.words.clone(),
+        row_names: words.row_names.clone(),
         claimed,
     };
     for function in functions {
         all.entries.extend(system.differential(*function));
-        all.words.push(system.graph.text(*function));
+        all.row_names.push(system.graph.text(*function));
     }
     all
 }
 
-/// What the checker needs of a proof: the rank of the words, and the ranks with the functions.
+/// What the checker needs of a proof: the rank of the Lie derivatives, and the ranks with the functions.
 pub(super) fn proof(
     system: &mut System,
     on: &OnBranch,
-    (is_seen, frame): (bool, Frame),
+    (is_observable, frame): (bool, Frame),
     verdict: &Verdict,
     rng: &mut ChaCha8Rng,
 ) -> Vec<Evidence> {
@@ -122,7 +122,7 @@ pub(super) fn proof(
     let rank = words.claimed;
     let functions = on.statement.sides.clone();
     let mut matrices = Vec::new();
-    match is_seen {
+    match is_observable {
         true => matrices.push(with_functions(system, &words, &functions, rank)),
         false => {
             for function in functions {
@@ -134,17 +134,17 @@ pub(super) fn proof(
     matrices.iter().filter_map(|matrix| claimed_rank(system, on, matrix, verdict, rng)).collect()
 }
 
-/// A function of which the contrary is so.
+/// A function for which the contrary of the claim holds.
 pub(super) struct Refuted<'a> {
     pub on: &'a OnBranch,
     pub function: NodeId,
     /// What was claimed of it.
-    pub is_seen: bool,
+    pub is_observable: bool,
 }
 
 impl Refuted<'_> {
-    /// A state at which the words have the rank that they have almost everywhere and the function's differential does to it what it
-    /// does there, with both ranks for the checker, which has confirmed them; no state where none was found.
+    /// A state at which the Lie derivatives have their generic rank and the function's differential changes it as it does generically,
+    /// with both ranks, which the checker has confirmed; an empty state where none was found.
     pub(super) fn witness(
         &self,
         system: &mut System,
@@ -160,7 +160,7 @@ impl Refuted<'_> {
         };
         let (left, right) = match rank {
             Some(rank) => (
-                format!("rank {} with d({text})", rank + usize::from(self.is_seen)),
+                format!("rank {} with d({text})", rank + usize::from(self.is_observable)),
                 format!("rank {rank} without it"),
             ),
             None => (format!("d({text})"), "the span of what is measured".to_owned()),
@@ -173,9 +173,9 @@ impl Refuted<'_> {
         system: &mut System,
         words: &RankedMatrix,
         rng: &mut ChaCha8Rng,
-    ) -> Option<(usize, StateInWords, Vec<Evidence>)> {
+    ) -> Option<(usize, WrittenState, Vec<Evidence>)> {
         let rank = words.claimed;
-        let with_it = rank + usize::from(self.is_seen);
+        let with_it = rank + usize::from(self.is_observable);
         let all = with_functions(system, words, &[self.function], with_it);
         let terms = Terms { sides: all.entries.clone(), relations: Vec::new(), ..self.on.statement.clone() };
         let on = OnBranch::new(system, &self.on.branch, &terms).ok()?;
@@ -189,7 +189,7 @@ impl Refuted<'_> {
                 continue;
             }
             let certified = |system: &mut System, matrix: &RankedMatrix| {
-                certified(system, &on, matrix, &point, &rows[..matrix.words.len()])
+                certified(system, &on, matrix, &point, &rows[..matrix.row_names.len()])
             };
             let both = [certified(system, words), certified(system, &all)];
             let [Some(without), Some(with)] = both else { continue };

@@ -116,7 +116,7 @@ fn shown(value: &RBig, digits: usize) -> String {
     if short { value.to_string() } else { round_to_decimal(value, digits) }
 }
 
-/// Two texts to as many digits as it takes to tell them apart.
+/// Two texts to as many digits as it takes to distinguish them.
 pub(super) fn until_they_differ(texts: impl Fn(usize) -> [String; 2]) -> [String; 2] {
     let mut digits = DIGITS;
     loop {

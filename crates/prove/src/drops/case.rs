@@ -1,4 +1,4 @@
-//! A set of states that is taken apart until nothing is left to say of it: equations are solved one after the other, and
+//! A set of states that is divided until its equations are met: they are solved one after the other, and
 //! where that divides by something that may vanish, both cases are followed.
 //!
 //! Every step is a cover: the states of a case are those of the cases that it is split into. So what is true of all the last
@@ -77,7 +77,7 @@ impl Case {
         self.pending.is_empty()
     }
 
-    /// Notes that something does not vanish. Whether that is possible is seen by [`Case::step`].
+    /// Notes that something does not vanish. Whether that is possible is checked by [`Case::step`].
     pub fn add_nonzero(&mut self, polynomial: &Polynomial) {
         if polynomial.is_zero() {
             self.nonzero.push(Polynomial::default());
@@ -351,7 +351,7 @@ impl Case {
 /// Equations that cannot be solved are calculated with up to this length and this total degree.
 const LONGEST_RELATION: usize = 60;
 const HIGHEST_RELATION: u32 = 12;
-/// A case is taken apart in so many steps where all that it comes to is asked for at once.
+/// A case is divided in at most so many steps where all of its parts are asked for at once.
 const MOST_STEPS: usize = 60;
 /// Relations are used in turn so often.
 const MOST_ROUNDS: usize = 8;

@@ -2,7 +2,7 @@
 //!
 //! A definition that is linear in a state, with a slope that vanishes nowhere, may stand for it: `d1` for `r1`, where
 //! `d1 = (r1*cos(phi2) + r2)/sin(phi2) - s1`. The rank is the same, since the differentials are multiplied by a matrix whose
-//! determinant is that slope's inverse; what is shown is in the words of the file.
+//! determinant is that slope's inverse; what is shown is in the file's own symbols.
 
 use super::algebra::{Algebra, Chart, Reach};
 use super::case::Case;
@@ -16,7 +16,7 @@ use palmistry_math::number::polynomial::{Polynomial, Ring};
 /// So many definitions are tried.
 const MOST_TRIED: usize = 24;
 
-/// Chooses coordinates for the rows of words, one after the other, as long as they make the rows shorter.
+/// Chooses coordinates for the rows of Lie derivatives, one after the other, as long as they make the rows shorter.
 pub(super) fn choose(algebra: &mut Algebra<'_>, search: &mut Search<'_>) -> Reach<()> {
     let mut domains = Vec::new();
     for chart in algebra.charts().ok_or("there are too many angles")? {

@@ -14,7 +14,7 @@ use palmistry_lang::{Matrix, System, determinant};
 use palmistry_math::expression::{Guard, Need, NodeId};
 use palmistry_math::number::Rationals;
 use palmistry_rank::observability::{
-    Codistribution, GenericRank, Length, State, StateInWords, generic_rank, rank,
+    Codistribution, GenericRank, Length, State, WrittenState, generic_rank, rank,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -59,7 +59,7 @@ pub(crate) struct MinorIdentity {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StatesOfCases {
     /// What the rows are of.
-    pub words: Vec<String>,
+    pub row_names: Vec<String>,
     /// Their entries, one row after the other, as the file has them.
     pub entries: Vec<NodeId>,
     pub states: Vec<State>,
@@ -81,7 +81,7 @@ pub(crate) enum Everywhere {
     /// At a state where it is claimed to be so the rank is another one.
     Refuted { state: State, found: usize, set: Vec<String>, log2_error: f64 },
     /// At a state of which one number is irrational the rank is lower than claimed: at most this.
-    RefutedAt { state: StateInWords, at_most: usize, set: Vec<String>, log2_error: f64 },
+    RefutedAt { state: WrittenState, at_most: usize, set: Vec<String>, log2_error: f64 },
     /// Neither, in words.
     Open(String),
 }
@@ -129,7 +129,7 @@ fn decided(
         (greatest, log2_error) = at_almost_all(system, claim, seed)?;
     }
     let rows = |system: &mut System| match &claim.matrix {
-        None => Rows::of_words(system),
+        None => Rows::of_lie_derivatives(system),
         Some((entries, columns)) => Rows::of_matrix(&system.graph, entries, *columns),
     };
     let mentioned: Vec<NodeId> = claim.except.iter().flat_map(NamedSet::mentioned).collect();
@@ -176,8 +176,8 @@ fn decided(
     Ok(first)
 }
 
-/// The rank at almost all states that have the values at the beginning which the file gives, and a bound on the probability of an
-/// error, as a power of two.
+/// The rank at almost all states with the file's initial values, or without them where that rank is not known to be final, and a
+/// bound on the probability of an error, as a power of two.
 fn at_almost_all(system: &mut System, claim: &ClaimedEverywhere, seed: u64) -> Result<(usize, f64), String> {
     let Some((entries, columns)) = &claim.matrix else {
         let initial = initial_values(system)?;
@@ -224,7 +224,7 @@ fn another(
     }
 }
 
-/// Words of so many fields are looked at for a rank that is greater than claimed.
+/// Lie derivatives up to this order are taken to look for a rank that is greater than claimed.
 const MOST_FIELDS: usize = 3;
 
 /// What the cases say of the states off the sets that are left out.
@@ -244,7 +244,7 @@ fn off_the_sets(
         // all rows of a matrix are known, whatever is known of the case
         let certain = match &short.lower {
             Ok(log2_error) => Some(*log2_error),
-            Err(_) => (!search.rows.is_of_words()).then_some(f64::NEG_INFINITY),
+            Err(_) => (!search.rows.is_of_lie_derivatives()).then_some(f64::NEG_INFINITY),
         };
         let found =
             certain.and_then(|log2_error| Some((log2_error, lower_at(algebra, search, &pieces, claim)?)));
@@ -294,7 +294,7 @@ fn off_the_sets(
     let cases = (explored.cases, explored.empty);
     let used: BTreeSet<usize> = explored.full.iter().flat_map(|full| full.chosen.rows.clone()).collect();
     let examples = StatesOfCases {
-        words: used.iter().map(|row| search.rows.names[*row].clone()).collect(),
+        row_names: used.iter().map(|row| search.rows.names[*row].clone()).collect(),
         entries: search.rows.as_written(used.iter().copied()),
         states,
     };

@@ -8,7 +8,7 @@ use palmistry_math::expression::{NodeId, Symbol};
 pub(super) struct Coordinates {
     /// A state, the symbol that stands for it and what that means.
     pub changed: Vec<(Symbol, Symbol, NodeId)>,
-    /// The states that are stood for, in terms of all that is left.
+    /// The replaced states, in terms of all other symbols.
     pub values: Assignment,
 }
 

@@ -62,7 +62,7 @@ pub(super) fn covered(algebra: &mut Algebra<'_>, case: Case, by: &[&Case]) -> bo
     false
 }
 
-/// What is left of a case off that one of some others which leaves least; `None` where none of them holds almost all of it.
+/// The least rest of a case outside of one of some others; `None` where none of them holds almost all of it.
 fn least_rest(algebra: &mut Algebra<'_>, case: &Case, by: &[&Case]) -> Option<Vec<Case>> {
     let mut best: Option<Vec<Polynomial>> = None;
     for other in by.iter().filter(|other| other.chart.is_subset(&case.chart)) {
@@ -97,7 +97,7 @@ fn within(algebra: &mut Algebra<'_>, case: &Case, other: &Case) -> Option<Vec<Po
     all_doubtful(case, &nonzero.ok()?)
 }
 
-/// That the case lies among the limits of the other one, whose states are given by values that depend on what is left continuously
+/// That the case lies among the limits of the other one, whose states are given by values that depend continuously on the rest
 /// as long as no divisor vanishes; where no value mentions an angle that becomes a half turn, also at half turns. Minors that are
 /// zero on a set are zero at its limits.
 fn on_the_graph(algebra: &mut Algebra<'_>, case: &Case, other: &Case) -> Option<Vec<Polynomial>> {

@@ -1,4 +1,4 @@
-//! All states, taken apart into sets on each of which the rank is known.
+//! All states, divided into sets on each of which the rank is known.
 
 use super::algebra::{Algebra, Chart, Reach};
 use super::case::{Case, Step};
@@ -18,7 +18,7 @@ const MOST_CASES: usize = 3_000;
 const MOST_FOLLOWED: usize = 40;
 /// Nor are minors looked for on more of them.
 const MOST_TRIED: usize = 4;
-/// So many of those that are left are told.
+/// At most this many of the remaining ones are reported.
 const MOST_LEFT: usize = 60;
 
 /// A minor that is nowhere zero on a set.
@@ -86,7 +86,7 @@ pub(super) struct Search<'a> {
     pub known: Vec<Polynomial>,
 }
 
-/// Is told each set on which the rank is lower, when it is found.
+/// Is called for each set on which the rank is lower, when it is found.
 pub(super) type Tell<'a> = dyn FnMut(&mut Algebra<'_>, &mut Search<'_>, &ShortCase) + 'a;
 
 impl Search<'_> {
@@ -98,7 +98,7 @@ impl Search<'_> {
         self.run_telling(algebra, &mut |_, _, _| ())
     }
 
-    /// The same, and tells what it finds; what is drawn for that changes nothing.
+    /// The same, and reports what it finds; random numbers drawn by `tell` change nothing.
     ///
     /// # Errors
     /// In words, where something is out of reach.

@@ -54,7 +54,7 @@ pub(super) fn derivative(polynomial: &Polynomial, place: usize) -> Polynomial {
     sum
 }
 
-/// A factor taken apart further: by discriminants that are squares, and by factors that are linear in a variable.
+/// A factor divided further: by discriminants that are squares, and by factors that are linear in a variable.
 fn refined(polynomial: Polynomial) -> Vec<Polynomial> {
     if polynomial.len() < 2 || polynomial.len() > LONGEST {
         return vec![polynomial];

@@ -1,4 +1,4 @@
-//! Where the rank is lower: all minors of a set vanish, and no field leaves it, so that longer words add nothing
+//! Where the rank is lower: all minors of a set vanish, and no field leaves it, so that higher Lie derivatives add nothing
 //! ([`palmistry_rank::observability::RankGrowth`]).
 
 use super::algebra::{Algebra, Chart, Reach};
@@ -27,7 +27,7 @@ impl Search<'_> {
         if let Some(bound) = self.lower_around(algebra, case) {
             return short(Ok(bound));
         }
-        if self.rows.is_of_words() {
+        if self.rows.is_of_lie_derivatives() {
             if let Some(field) = leaving_field(algebra, case) {
                 if self.rows.extend(algebra) {
                     return self.rank_on(algebra, case);
@@ -131,7 +131,7 @@ impl Search<'_> {
         None
     }
 
-    /// That the rank is lower on a set whose equations can be solved without taking it apart.
+    /// That the rank is lower on a set whose equations can be solved without dividing it.
     fn lower_where_solved(&mut self, algebra: &mut Algebra<'_>, mut case: Case) -> Option<ShortRank> {
         let case = loop {
             match case.step(algebra).ok()? {
@@ -151,8 +151,8 @@ impl Search<'_> {
 
     /// That the rank is lower than asked at all states of a set: one that none of them exceeds.
     ///
-    /// Where no field leaves the set, a rank that one order more of words did not raise is that of all words; all minors of
-    /// the asked size are then zero at almost all of its states, and so at all.
+    /// Where no field leaves the set, a rank that one order more of Lie derivatives did not raise is that of all of them; all
+    /// minors of the asked size are then zero at almost all of its states, and so at all.
     ///
     /// # Errors
     /// Why that is not known, in words.
@@ -168,7 +168,7 @@ impl Search<'_> {
         let ranks = self.rows.ranks(algebra, &case.chart, point, &mut self.rng);
         let (seen, growth) = ranks.ok_or("no point was found at which the rows exist")?;
         let mut error = f64::NEG_INFINITY;
-        if self.rows.is_of_words() {
+        if self.rows.is_of_lie_derivatives() {
             let field = leaving_field(algebra, case);
             if let Some(field) = field {
                 return Err(format!(

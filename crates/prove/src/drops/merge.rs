@@ -1,6 +1,6 @@
-//! Sets of several charts as few sets of the file's own words, to be printed: what lies in another one is left out, and what is
+//! Sets of several charts as few sets in the file's own symbols, to be printed: what lies in another one is left out, and what is
 //! cut out by the two factors of a sine or a cosine is cut out by that. Together they are the same states: each of these steps is
-//! held against the cases as they were found, in every chart.
+//! checked against the cases as they were found, in every chart.
 
 use super::algebra::{Algebra, Chart, normal};
 use super::case::Case;

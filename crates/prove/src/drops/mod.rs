@@ -1,6 +1,6 @@
 //! Where the rank drops: the exact set, and a proof that off it the rank is what it is at almost all states.
 //!
-//! All states are taken apart into cases. On each a minor is found that is not identically zero there, as a product of
+//! All states are divided into cases. On each a minor is found that is not identically zero there, as a product of
 //! factors; where none of these vanishes the rank is full, and where one does is a smaller case, which is followed in turn:
 //! the equation is solved, put in, and another minor is looked for. A case ends where it is empty (an equation has no real
 //! solution, or contradicts what does not vanish), where a minor has no factor left that could vanish, or where no minor is

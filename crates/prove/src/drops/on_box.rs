@@ -9,10 +9,10 @@ use std::sync::atomic::AtomicBool;
 /// So many boxes are looked at.
 const BOXES: u64 = 4_000;
 
-/// On how much of the sample box the rank is proved to be full.
+/// The share of the sample box on which full rank is proved.
 #[derive(Clone, Debug)]
 pub struct BoxShare {
-    /// The part of its volume, rounded down.
+    /// The fraction of its volume, rounded down.
     pub proved: f64,
     /// Boxes that were looked at.
     pub boxes: u64,

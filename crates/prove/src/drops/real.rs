@@ -10,7 +10,7 @@ use palmistry_math::expression::{Guard, Need, NodeId, Program, Symbol, expand_an
 use palmistry_math::number::polynomial::Polynomial;
 use palmistry_math::number::real_roots::{common, rational_zeros, real_roots, square_free, zeros_of};
 use palmistry_math::number::{Arithmetic, Rationals, rational_to_f64};
-use palmistry_rank::observability::{Coordinate, NamedCoordinate, State, StateInWords};
+use palmistry_rank::observability::{Coordinate, NamedCoordinate, State, WrittenState};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -88,7 +88,7 @@ pub(super) fn irrational_state(
     algebra: &mut Algebra<'_>,
     search: &Search<'_>,
     case: &Case,
-) -> Option<StateInWords> {
+) -> Option<WrittenState> {
     let RealPoint { free, solved, place, equation } = real_point(algebra, search, case)?;
     let symbol = algebra.symbol_at(place)?;
     // an angle is not the number that stands for it, and what follows from an irrational number has no short name

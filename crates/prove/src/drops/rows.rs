@@ -1,13 +1,13 @@
-//! The rows whose rank is asked for: a matrix of the file, or the differentials of Lie derivatives along longer and longer
-//! words, which are taken as they are needed. These are taken by all coordinates that move, the unknown ones first: whether longer words
-//! add nothing is asked of all columns ([`RankGrowth`]), and the rank of those of the unknown.
+//! The rows whose rank is asked for: a matrix of the file, or the differentials of Lie derivatives of higher and higher order,
+//! which are taken as they are needed. They are taken by all coordinates that move, the unknown ones first: whether higher
+//! orders add nothing is asked of all columns ([`RankGrowth`]), and the rank of the unknown ones.
 
 use super::algebra::{Algebra, Chart};
 use super::point::{Point, run};
 use palmistry_lang::System;
 use palmistry_math::expression::{Graph, NodeId, Program, Symbol, gradient};
 use palmistry_math::number::PrimeField;
-use palmistry_rank::observability::{Codistribution, Length, RankGrowth, Word, independent_rows};
+use palmistry_rank::observability::{Codistribution, Length, LieDerivative, RankGrowth, independent_rows};
 use rand::Rng;
 use std::collections::HashMap;
 
@@ -15,29 +15,29 @@ use std::collections::HashMap;
 pub(super) struct Rows {
     /// The columns whose rank is asked for; they are the first.
     pub columns: usize,
-    /// All of them: of words those of known initial conditions too.
+    /// All columns: for Lie derivatives those of known initial conditions too.
     pub width: usize,
-    /// What the columns of words are by, in their order.
+    /// The coordinates that Lie derivatives are differentiated by, in the order of the columns.
     by: Vec<Symbol>,
     /// What each row is of, as a paper writes it.
     pub names: Vec<String>,
     pub rows: Vec<Vec<NodeId>>,
     /// The same as the file has them, by its states.
     written: Vec<Vec<NodeId>>,
-    /// How many fields the word of each has.
+    /// The order of the Lie derivative of each row.
     orders: Vec<usize>,
     /// By how many nodes each is made of: short ones are taken first.
     costs: Vec<usize>,
-    /// The longest words and their values; none where the rows are all that there are.
-    last: Vec<(Word, NodeId)>,
+    /// The Lie derivatives of the highest order and their values; empty where the rows are all that there are.
+    last: Vec<(LieDerivative, NodeId)>,
     pub order: usize,
     grows: bool,
-    /// Whether no longer word has a differential that is not zero.
+    /// Whether no Lie derivative of higher order has a differential that is not zero.
     pub complete: bool,
     programs: HashMap<Chart, (usize, Program)>,
 }
 
-/// Words have at most so many fields more than there are states, and no more of them are taken.
+/// The order is at most the number of columns plus this, and the number of rows is bounded.
 const MORE_FIELDS: usize = 2;
 const MOST_WORDS: usize = 300;
 
@@ -74,9 +74,9 @@ impl Rows {
     }
 
     /// The differentials of the outputs, and what comes of them.
-    pub fn of_words(system: &mut System) -> Rows {
-        let last: Vec<(Word, NodeId)> = (0..system.outputs.len())
-            .map(|output| (Word { fields: Vec::new(), output }, system.outputs[output].1))
+    pub fn of_lie_derivatives(system: &mut System) -> Rows {
+        let last: Vec<(LieDerivative, NodeId)> = (0..system.outputs.len())
+            .map(|output| (LieDerivative { fields: Vec::new(), output }, system.outputs[output].1))
             .collect();
         let mut by = system.unknowns();
         let columns = by.len();
@@ -101,8 +101,7 @@ impl Rows {
         rows
     }
 
-    /// The rows in the coordinates of an algebra, those of words that were added since the last time; all of them where the
-    /// coordinates were changed.
+    /// The rows in the coordinates of an algebra, all of them: called when the coordinates have changed.
     pub fn prepare(&mut self, algebra: &mut Algebra<'_>) {
         self.rows.clear();
         self.programs.clear();
@@ -122,8 +121,8 @@ impl Rows {
         rows.into_iter().flat_map(|row| all[row][..self.columns].iter().copied()).collect()
     }
 
-    /// The numbers of columns that have to be looked at, one after the other, before something is said of the rank: all that longer words
-    /// are told by, and then those that it is asked of.
+    /// The numbers of columns whose rank has to be examined, one after the other: all columns, by which it is known whether higher
+    /// orders add to the rank, and then those whose rank is asked for.
     pub fn spans(&self) -> Vec<usize> {
         match self.complete || self.width == self.columns {
             true => vec![self.columns],
@@ -131,12 +130,12 @@ impl Rows {
         }
     }
 
-    /// Whether longer words can be taken.
-    pub fn is_of_words(&self) -> bool {
+    /// Whether Lie derivatives of higher order can be taken.
+    pub fn is_of_lie_derivatives(&self) -> bool {
         self.grows
     }
 
-    fn add(&mut self, system: &mut System, words: Vec<(Word, NodeId)>) {
+    fn add(&mut self, system: &mut System, words: Vec<(LieDerivative, NodeId)>) {
         for (word, value) in &words {
             let row = gradient(&mut system.graph, *value, &self.by);
             if row.iter().all(|entry| system.graph.constant_value(*entry).is_some_and(|c| c.is_zero())) {
@@ -150,7 +149,7 @@ impl Rows {
         self.last = words;
     }
 
-    /// Takes words of one field more; whether there were any.
+    /// Takes Lie derivatives of one order more; whether there were any.
     pub fn extend(&mut self, algebra: &mut Algebra<'_>) -> bool {
         let longer = self.longer(algebra.system);
         self.catch_up(algebra);
@@ -170,7 +169,7 @@ impl Rows {
                 if system.graph.constant_value(derivative).is_none() {
                     let mut fields = vec![field];
                     fields.extend_from_slice(&word.fields);
-                    longer.push((Word { fields, output: word.output }, derivative));
+                    longer.push((LieDerivative { fields, output: word.output }, derivative));
                 }
             }
         }
@@ -183,7 +182,7 @@ impl Rows {
         true
     }
 
-    /// Rows and columns that are independent at a point, of words that are shorter than the longest, unless these are all; among the
+    /// Rows and columns that are independent at a point, of Lie derivatives below the highest order, unless these are all; among the
     /// first so many columns.
     pub fn shortest(
         &mut self,
@@ -198,7 +197,7 @@ impl Rows {
         choose(&point.field, &matrix, &order, columns, columns)
     }
 
-    /// The rank at a point; and how that by all columns has grown with the longest words.
+    /// The rank at a point; and how the rank of all columns has grown with the highest order.
     pub fn ranks(
         &mut self,
         algebra: &mut Algebra<'_>,
@@ -221,7 +220,7 @@ impl Rows {
         Some((rank(&order, self.columns)?, growth))
     }
 
-    /// Whether no longer word adds to a rank where no field leaves the set on which its rows have grown so.
+    /// Whether no higher order adds to the rank where no field leaves the set on which its rows have grown so.
     pub fn have_rested(&self, growth: RankGrowth) -> bool {
         self.complete || growth.has_ended()
     }
@@ -266,12 +265,12 @@ impl Rows {
     }
 }
 
-/// The rows of words, by name and one after the other, until some of them have a rank at almost all states, and of one field
+/// The rows of Lie derivatives, with their names, until some of them have a rank at almost all states, and of one order
 /// more.
 pub(crate) fn rows_up_to(system: &mut System, rank: usize) -> (Vec<String>, Vec<NodeId>) {
     let fields = Codistribution::new(system, &Default::default(), Length::UntilItStops);
     let order = fields.map_or(0, |words| if words.generic_rank() >= rank { words.order } else { 0 });
-    let mut rows = Rows::of_words(system);
+    let mut rows = Rows::of_lie_derivatives(system);
     while rows.order <= order && rows.longer(system) {}
     let is_zero = |entry: &NodeId| system.graph.constant_value(*entry).is_some_and(|c| c.is_zero());
     let counts = |row: &usize| !rows.written[*row][..rows.columns].iter().all(is_zero);

@@ -1,4 +1,4 @@
-//! What was found, in the words of the file.
+//! The result, in the file's own symbols.
 
 use super::algebra::{Algebra, Reach, with_angles};
 use super::case::Case;
@@ -13,7 +13,7 @@ use super::shown::Shown;
 use palmistry_budget::{Budget, OF_A_QUESTION};
 use palmistry_lang::{Assignment, System};
 use palmistry_math::expression::{Guard, NodeId, add_guard};
-use palmistry_rank::observability::{Codistribution, Length, StateInWords, solve_conditions};
+use palmistry_rank::observability::{Codistribution, Length, WrittenState, solve_conditions};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
@@ -31,12 +31,12 @@ pub struct DropSet {
     pub rank: usize,
     /// Whether all of its states have it: else smaller sets within it may have a lower one.
     pub exactly: bool,
-    /// Why it is not known that the rank is lower at all of its states; nothing where it is.
+    /// Why it is not known that the rank is lower at all of its states; `None` where it is.
     pub open: Option<String>,
     /// A bound on the probability that the rank is not lower, as a power of two.
     pub log2_error: f64,
     /// A state of it in exact numbers, where one was found.
-    pub state: Option<StateInWords>,
+    pub state: Option<WrittenState>,
     /// Whether it is known to have states: equations in real numbers may have no solution.
     pub exists: bool,
 }
@@ -65,26 +65,26 @@ pub struct DropAnswer {
     pub dimension: usize,
     /// The rank at almost all states.
     pub rank: usize,
-    /// Whether longer words cannot raise it.
+    /// Whether higher Lie derivatives cannot raise it.
     pub is_final: bool,
-    /// What the file says of values at the beginning: states are asked for which meet it.
+    /// The initial conditions of the file: only states that meet them are considered.
     pub initial: Vec<String>,
-    /// What has to hold for all words to exist.
+    /// What has to hold for all Lie derivatives to exist.
     pub domain: Vec<String>,
     /// Where the rank is proved to be lower.
     pub sets: Vec<DropSet>,
-    /// Where it may be.
+    /// Where it may be lower.
     pub open: Vec<DropSet>,
     /// The minors by which it is proved to be no lower anywhere else.
     pub minors: Vec<UsedMinor>,
     /// How many sets were looked at, and how many of them are empty.
     pub cases: (usize, usize),
-    /// Why the set was not found; nothing where it was.
+    /// Why the set was not found; `None` where it was.
     pub out_of_reach: Option<String>,
-    /// Whether the search was interrupted: sets may be missing then, and are not merged where it was not waited for.
+    /// Whether the search was interrupted: sets may be missing then, and may not be merged.
     pub interrupted: bool,
-    /// Where the sets are not known to be all: on how much of the sample box interval certificates prove the rank to be full, or why
-    /// that is not known; nothing where they are.
+    /// If the sets are not known to be all: the share of the sample box on which interval certificates prove full rank, or why
+    /// that is not known; `None` if they are.
     pub on_the_box: Option<Result<BoxShare, String>>,
     /// How long it took.
     pub seconds: f64,
@@ -105,7 +105,7 @@ pub fn where_it_drops(system: &mut System, seed: u64, interrupt: &AtomicBool) ->
     where_it_drops_telling(system, seed, interrupt, &mut |_| ())
 }
 
-/// The same, and tells what is known on the way: the rank at almost all states, then each set as it is found, not yet merged.
+/// The same, and reports what is known on the way: the rank at almost all states, then each set as it is found, not yet merged.
 ///
 /// # Errors
 /// In words, where there is no codistribution.
@@ -145,7 +145,7 @@ pub fn where_it_drops_telling(
     Ok(answer)
 }
 
-/// All that Lie derivatives are made of: the outputs' differentials, the fields and where they exist.
+/// All that Lie derivatives depend on: the outputs' differentials, the fields and where they exist.
 pub(super) fn mentioned_in_words(system: &mut System) -> Vec<NodeId> {
     let outputs: Vec<NodeId> = system.outputs.iter().map(|(_, output)| *output).collect();
     let mut found: Vec<NodeId> = outputs.into_iter().flat_map(|output| system.differential(output)).collect();
@@ -156,7 +156,7 @@ pub(super) fn mentioned_in_words(system: &mut System) -> Vec<NodeId> {
     found
 }
 
-/// What the file says of values at the beginning.
+/// The initial conditions of the file.
 #[derive(Default)]
 struct Initial {
     vanishing: Vec<NodeId>,
@@ -164,10 +164,10 @@ struct Initial {
     texts: Vec<String>,
 }
 
-/// What the file says of values at the beginning, as expressions that vanish and what these need to exist.
+/// The initial conditions of the file, as expressions that vanish and what these need to exist.
 ///
 /// # Errors
-/// In words, where a side is no number.
+/// In words, where a side is not a number.
 fn initial_equations(system: &mut System) -> Result<Initial, String> {
     let mut found = Initial::default();
     for equation in system.initial_conditions().to_vec() {
@@ -186,7 +186,7 @@ fn initial_equations(system: &mut System) -> Result<Initial, String> {
 /// The same solved: values for states.
 ///
 /// # Errors
-/// In words, where that is not possible in one way.
+/// In words, where they have no solution or several.
 pub(super) fn initial_values(system: &mut System) -> Result<Assignment, String> {
     let equations = system.initial_conditions().to_vec();
     let mut branches = solve_conditions(system, &equations).map_err(|why| why.to_string())?;
@@ -196,7 +196,7 @@ pub(super) fn initial_values(system: &mut System) -> Result<Assignment, String> 
     }
 }
 
-/// Nothing, where every state is one at which the rank is asked for, and words are Lie derivatives.
+/// `Ok` where the rank is asked for at every state, and Lie derivatives are taken along fields.
 ///
 /// # Errors
 /// In words.
@@ -248,7 +248,7 @@ fn drops_of(
     let mut so_far = answer.clone();
     (so_far.out_of_reach, so_far.interrupted) = (Some("it was interrupted".to_owned()), true);
     tell(so_far.clone());
-    let rows = Rows::of_words(system);
+    let rows = Rows::of_lie_derivatives(system);
     let asked = Asked { rank, guards, conditions, ..Asked::default() };
     let found = prepared(system, rows, &asked, seed, interrupt, |algebra, search| {
         let explored = &search.run_telling(algebra, &mut |algebra, search, short| {
@@ -304,14 +304,14 @@ pub(super) fn prepared<T>(
     work: impl FnOnce(&mut Algebra<'_>, &mut Search<'_>) -> Reach<T>,
 ) -> Reach<T> {
     let mut mentioned: Vec<NodeId> = rows.rows.iter().flatten().copied().collect();
-    if rows.is_of_words() {
+    if rows.is_of_lie_derivatives() {
         for field in system.moving_fields() {
             mentioned.extend(system.fields[field].components.iter().map(|(_, rate)| *rate));
         }
     }
     mentioned.extend(asked.guards.iter().map(|guard| guard.node));
     mentioned.extend(asked.conditions.iter().chain(&asked.nonzero).chain(&asked.mentioned));
-    let of_words = rows.is_of_words();
+    let of_lie_derivatives = rows.is_of_lie_derivatives();
     let mut algebra = Algebra::new(system, &mentioned);
     let mut search = Search {
         rows,
@@ -323,7 +323,7 @@ pub(super) fn prepared<T>(
         rng: ChaCha8Rng::seed_from_u64(seed),
         known: Vec::new(),
     };
-    if of_words {
+    if of_lie_derivatives {
         search.rows.extend(&mut algebra);
         choice::choose(&mut algebra, &mut search)?;
     }
@@ -342,7 +342,7 @@ fn used(algebra: &mut Algebra<'_>, rows: &Rows, full: &FullCase) -> UsedMinor {
     UsedMinor {
         equations: equations(algebra, &full.case),
         rows: full.chosen.rows.iter().map(|row| rows.names[*row].clone()).collect(),
-        columns: match rows.is_of_words() {
+        columns: match rows.is_of_lie_derivatives() {
             true => columns.filter_map(|column| states.get(*column).cloned()).collect(),
             false => columns.map(|column| format!("column {}", column + 1)).collect(),
         },

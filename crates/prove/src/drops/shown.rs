@@ -1,4 +1,4 @@
-//! A set as it is printed: equations in the file's own words, and what must not vanish on it.
+//! A set as it is printed: equations in the file's own symbols, and what must not vanish on it.
 //!
 //! Equations of a chart say something of half turns too, once they are written in sines and cosines: each in its own way, which
 //! may be more than the limits of the set, and less. So it is asked in each chart what the printed equations describe there.
@@ -220,7 +220,7 @@ impl Shown {
         cases: &[&Case],
     ) {
         let own = std::slice::from_ref(&self.chart).to_vec();
-        // all of it at once, which is often so and soon seen
+        // all of it at once, which is often so and quickly checked
         let mut wider = self.clone();
         wider.nonzero.clear();
         if wider.lies_in(algebra, search, &own, cases) {

@@ -22,8 +22,8 @@ const LEAST_EFFORT: u64 = 1 << 20;
 pub struct WrittenBoxes {
     /// The boxes in the file.
     pub boxes: usize,
-    /// Of the largest proved boxes those that the checker's plain arithmetic does not show with bounded work: they are
-    /// left out, so that all that is written is found again.
+    /// How many of the largest proved boxes the checker's plain arithmetic does not confirm with bounded work: they are
+    /// left out, so that the checker confirms all that is written.
     pub left_out: usize,
 }
 
@@ -99,7 +99,7 @@ fn certified_boxes(
     });
     Ok(CertifiedBoxes {
         columns: system.unknowns().iter().map(|state| name(*state)).collect(),
-        words: kept.iter().map(|row| region.rows()[*row].name.clone()).collect(),
+        row_names: kept.iter().map(|row| region.rows()[*row].name.clone()).collect(),
         rows,
         requirements,
         ranges: free.chain(held).collect(),

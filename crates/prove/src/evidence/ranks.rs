@@ -95,7 +95,7 @@ fn certified_rank(
     let with_minor = |recorded: &RecordedState| RankedState {
         state: exact_state(graph, &recorded.state),
         rank: recorded.rank,
-        // a minor that is too small, or none, is seen by the checker
+        // a minor that is too small, or none, is noticed by the checker
         minor: largest_minor(&program, width, &recorded.state, field).unwrap_or_default(),
         kernel: recorded.unobservable.iter().map(|v| v.iter().cloned().map(Ratio).collect()).collect(),
     };
@@ -124,7 +124,7 @@ fn certified_rank(
         conditions.guards.iter().map(|guard| lowering.requirement(*guard)).collect::<Result<_, _>>()?;
     Ok(CertifiedRank {
         columns: system.unknowns().iter().map(|state| graph.symbol_name(*state).to_owned()).collect(),
-        words: kept.iter().map(|row| rows[*row].word.clone()).collect(),
+        row_names: kept.iter().map(|row| rows[*row].lie_derivative.clone()).collect(),
         rows: places,
         conditions: met,
         requirements,

@@ -16,7 +16,7 @@ pub struct StatementAt<'g> {
     pub graph: &'g Graph,
     /// The entries of the left side, then those of the right.
     pub sides: &'g [NodeId],
-    /// How each entry of the left is claimed to stand to that of the right; none where all are equations.
+    /// The relation claimed between each entry of the left and that of the right; empty where all are equations.
     pub relations: &'g [Relation],
     /// Where sides are claimed to be near each other: the tolerance.
     pub within: Option<NodeId>,

@@ -1,9 +1,9 @@
 //! What to measure or to know besides, so that given unknowns become observable or identifiable: all minimal sets of further outputs,
 //! known parameters, known initial conditions, inputs and experiments.
 //!
-//! What is added is written as lines of the file, so that a set that is found is a system as a person would write it. Which sets suffice is seen in the rows of one
-//! random point: those of an output are the same whatever else is measured. What is found so is then decided
-//! anew as the question of any file, and that nothing of it can be left out as well.
+//! What is added is written as lines of the file, so that a set that is found is a system as a person would write it. Which sets suffice follows from
+//! the rows at one random point: those of an output are the same whatever else is measured. What is found so is then decided anew as the question of
+//! any file, and that nothing of it can be left out as well.
 //!
 //! Reference: A. F. Villaverde, *Observability and structural identifiability of nonlinear biological systems*, Complexity 2019, section 4, for what is asked.
 
@@ -34,7 +34,7 @@ pub enum Addition {
     Initial(String),
     /// A known input moves a state: it is added to its rate.
     Input(String),
-    /// The system is looked at once more, from other initial conditions.
+    /// A further experiment with the system, from other initial conditions.
     Experiment,
 }
 
@@ -69,9 +69,9 @@ pub struct DesignQuestion<'a> {
     pub work: u64,
     /// The folder of the file, from which what it imports is read.
     pub folder: &'a Path,
-    /// Set by whoever does not wait any longer.
+    /// Set from outside to stop early.
     pub interrupt: &'a AtomicBool,
-    /// Told how many sets were looked at.
+    /// Called with the number of sets that were looked at.
     pub progress: &'a (dyn Fn(u64) + Sync),
 }
 
@@ -100,9 +100,9 @@ pub struct DesignTarget {
     pub name: String,
     /// What it is.
     pub kind: UnknownKind,
-    /// Whether it is seen as things stand, locally.
-    pub seen: Observability,
-    /// How many values it has as things stand, where one is asked for.
+    /// Whether it is locally observable without additions.
+    pub observability: Observability,
+    /// How many values it has without additions, where a single one is asked for.
     pub solutions: Option<Solutions>,
 }
 
@@ -123,11 +123,11 @@ pub struct DesignAnswer {
     pub file: String,
     /// Its title.
     pub title: String,
-    /// What is to be identified, and how it stands without additions.
+    /// What is to be identified, and what is known of it without additions.
     pub targets: Vec<DesignTarget>,
     /// Whether one value was asked for.
     pub globally: bool,
-    /// Parameters that have the values of the file.
+    /// Parameters fixed at their values in the file.
     pub held: Vec<(String, RBig)>,
     /// Whether nothing needs to be added.
     pub is_met: bool,
@@ -151,7 +151,7 @@ const MOST_ADDITIONS: usize = 8;
 /// Why there is no answer.
 #[derive(Clone, Debug)]
 pub enum DesignError {
-    /// The file has nothing to ask for, or of a kind of which no designs are made, or a name is none of its unknowns.
+    /// The file has no unknowns or no outputs, or is of a kind for which no designs are made, or a name is none of its unknowns.
     Question(String),
     /// As for the rank.
     Rank(CodistributionError),
@@ -214,7 +214,7 @@ fn answered(system: &System, question: &DesignQuestion<'_>) -> Result<DesignAnsw
     if system.time == Time::Discrete {
         return refused("designs are made in continuous time alone, and this system goes in steps");
     }
-    if !system.zero_outputs().is_empty() || system.longest_word().is_some() {
+    if !system.zero_outputs().is_empty() || system.highest_lie_order().is_some() {
         return refused(
             "outputs that are zero tie known signals to states, and of these no designs are made",
         );
@@ -248,7 +248,12 @@ fn answered(system: &System, question: &DesignQuestion<'_>) -> Result<DesignAnsw
     let targets =
         wanted.iter().zip(now.seen.iter().zip(&now.solutions)).filter_map(|(name, (seen, solutions))| {
             let (_, kind) = kinds.iter().find(|(known, _)| known == name)?;
-            Some(DesignTarget { name: name.clone(), kind: *kind, seen: *seen, solutions: solutions.clone() })
+            Some(DesignTarget {
+                name: name.clone(),
+                kind: *kind,
+                observability: *seen,
+                solutions: solutions.clone(),
+            })
         });
     let mut answer = DesignAnswer {
         file: system.name.clone(),
@@ -321,7 +326,7 @@ struct Judged {
     solutions: Vec<Option<Solutions>>,
     /// Why something of the rank is open.
     open: Option<String>,
-    /// The probability of an error in what is seen, and in what is not.
+    /// The error probability of what is found observable or unobservable, as a power of two.
     log2_error: f64,
     /// That there is one value each, where it is proved.
     one: Option<f64>,
@@ -335,9 +340,9 @@ enum Proof {
     Proved(f64),
     /// One of the two is computed.
     Computed,
-    /// Nobody knows whether it suffices, and why.
+    /// It is undecided whether it suffices, and why.
     Undecided(String),
-    /// It does not suffice: not even locally, or it leaves several values.
+    /// It does not suffice: not even locally, or several values remain.
     NotMet { is_local: bool },
 }
 

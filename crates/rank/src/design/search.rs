@@ -180,7 +180,7 @@ impl<'a> Search<'a> {
         if entries > MOST_ENTRIES {
             return Err(room());
         }
-        // initial conditions that the file gives are left open: at these states no more is seen than at almost all
+        // initial conditions that the file gives are left free: at these states no more is observable than generically
         let mut all = all;
         let held = held_constants(&mut all);
         let probe = Probe::new(&all, &held);

@@ -28,7 +28,7 @@ impl Additions {
             of_kind.map(|(name, _)| name.clone()).collect()
         };
         let states = named(UnknownKind::State);
-        // what is known at the beginning alone can be measured, too
+        // a state of which only the initial condition is known can be measured, too
         let known_at_first =
             system.closed_coordinates().into_iter().filter(|state| system.known.contains(state));
         let known_at_first = known_at_first.map(|state| system.symbol_name(state).to_owned());
@@ -42,7 +42,7 @@ impl Additions {
             rows.extend(new.cloned().map(Addition::Output));
         }
         if has(AdditionKind::Known) {
-            // to be told what is asked for is no design
+            // to know what is to be identified is no design
             let parameters = named(UnknownKind::Parameter).into_iter();
             let others = parameters.filter(|name| question.targets.is_empty() || !wanted.contains(name));
             rows.extend(others.map(Addition::Known));
@@ -89,7 +89,7 @@ pub(super) fn with(
     let of_inputs = additions.iter().filter(|addition| matches!(addition, Addition::Input(_)));
     for addition in of_inputs {
         let Addition::Input(state) = addition else { continue };
-        // of a component as of a word, and none that stands in the file
+        // a name without brackets, also for a component, and none that stands in the file
         let word: String = state.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
         let mut names = (0..NAMES).map(|number| format!("into_{word}_{number}"));
         let name = names.find(|name| !system.source.contains(name.as_str()));

@@ -4,7 +4,7 @@
 //! time) fill an open set.
 //!
 //! Brackets of brackets are combinations of those that take one field of the system more at a time. At almost all states, and
-//! on almost all of a set that no field leaves, only the brackets that raised the rank have to be taken further: for a
+//! almost everywhere on an invariant set, only the brackets that raised the rank have to be taken further: for a
 //! combination with functions as coefficients `[f, a X] = a [f, X] + (L_f a) X`, so that their span holds those of all.
 //! Elsewhere all brackets are taken, up to as many fields as there are coordinates.
 //!
@@ -20,19 +20,19 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::{BTreeSet, HashMap};
 
-/// On a set that the fields leave, brackets are taken while they are no more than this.
+/// On a set that is not invariant, brackets are taken while they are no more than this.
 const PATIENCE: usize = 300;
 /// A graph with more operations than this is no longer worth growing.
 const LARGEST_GRAPH: usize = 4_000_000;
 
-/// How far a rank is known.
+/// What is known of a rank.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RankBounds {
-    /// The rank at almost all states is no less.
+    /// The rank at almost all states is at least this.
     pub at_least: usize,
-    /// Nor more, error probability below `2^log2_error`; the number of coordinates where nothing is known.
+    /// And no greater, with an error probability below `2^log2_error`; the number of coordinates where nothing is known.
     pub at_most: usize,
-    /// Minus infinity where there is nothing to err about.
+    /// Minus infinity where the bound is certain.
     pub log2_error: f64,
     /// Whether the lower bound was shown at a true state, because functions are met: it holds at almost all states that the
     /// domain of the functions connects with that one.
@@ -40,7 +40,7 @@ pub struct RankBounds {
 }
 
 impl RankBounds {
-    /// Nothing but that the rank is no more.
+    /// Nothing is known but that the rank is no greater.
     fn open(at_most: usize) -> RankBounds {
         RankBounds { at_least: 0, at_most, log2_error: f64::NEG_INFINITY, from_a_state: false }
     }
@@ -51,7 +51,7 @@ impl RankBounds {
     }
 }
 
-/// A part of the rows with as many columns as it can have of them.
+/// A square submatrix of the rows.
 #[derive(Clone, Debug)]
 pub struct BracketMinor {
     /// The coordinates of its columns.
@@ -85,7 +85,7 @@ struct Motion {
 /// The brackets from which the rank is decided.
 #[derive(Clone, Debug)]
 pub struct Accessibility {
-    /// The coordinates that can be moved at all: all states but constants and signals that nobody knows. A column each.
+    /// The coordinates that can be moved at all: all states but constants and unknown signals. A column each.
     pub columns: Vec<Symbol>,
     /// The brackets that were taken, shortest first, the drift last: names such as `[f, g]`.
     pub names: Vec<String>,
@@ -95,7 +95,7 @@ pub struct Accessibility {
     pub needed: Vec<usize>,
     /// The most fields in a bracket that was taken.
     pub order: usize,
-    /// Why no longer ones were.
+    /// Why no longer brackets were taken.
     pub stop: Stop,
     /// The rank of all.
     pub whole: RankBounds,
@@ -105,7 +105,7 @@ pub struct Accessibility {
 
 impl Accessibility {
     /// Takes brackets at a generic state that satisfies `conditions` (values for solved symbols) until they add nothing, or of
-    /// up to `order` fields beyond the first; `tell` hears of each length what is known by then.
+    /// up to `order` fields beyond the first; `tell` is called after each length with what is known by then.
     ///
     /// # Errors
     /// Where no field moves the states, every state is a pole or an angle is met outside sines and cosines.
@@ -132,7 +132,7 @@ impl Accessibility {
         let mut motions: Vec<Motion> = inputs.map(|one| one.motion.clone()).collect();
         let mut rows: Vec<Vec<NodeId>> = motions.iter().map(row).collect();
         let mut basis = raising(system, &rows, conditions)?;
-        // what is still to be taken further: where no field leaves the set, only what raised the rank
+        // what is still to be taken further: on an invariant set, only what raised the rank
         let mut taken_further = BTreeSet::new();
         let open = |basis: &[usize], count: usize, done: &BTreeSet<usize>| -> Vec<usize> {
             match invariant {
@@ -203,7 +203,7 @@ impl Accessibility {
         Ok(Accessibility { columns, names, rows, needed, order: taken, stop, whole, strong })
     }
 
-    /// The coordinates of a system that something can move: a constant, and a signal that nobody knows, are none.
+    /// The coordinates of a system that something can move: constants and unknown signals are none.
     pub fn columns_of(system: &System) -> Vec<Symbol> {
         let is_state = |symbol: &Symbol| match system.unknown_kind(*symbol) {
             Some(kind) => kind == UnknownKind::State,
@@ -213,8 +213,8 @@ impl Accessibility {
         system.states.iter().copied().filter(is_state).collect()
     }
 
-    /// A square part of the rows that raised the rank, of as many columns, that is regular at a random point: where functions
-    /// are met, a state at which it is regular too shows what the rank is no less than. `strong` leaves out the drift.
+    /// A square submatrix of the rows that raised the rank, regular at a random point: where functions are met, a state at
+    /// which it is regular too proves a lower bound on the rank. `strong` leaves out the drift.
     ///
     /// # Errors
     /// As [`Accessibility::new`].

@@ -1,6 +1,6 @@
-//! Words of Lie derivatives where all of an order are too many: only those that raise the rank are taken, and continued.
+//! Lie derivatives where all of an order are too many: only those that raise the rank are taken, and continued.
 
-use super::codistribution::{Codistribution, Word};
+use super::codistribution::{Codistribution, LieDerivative};
 use super::evaluated_rows::EvaluatedRows;
 use super::needed::{CodistributionError, needed};
 use super::saturation::Stop;
@@ -8,21 +8,21 @@ use super::series::lie_derivative_by_series;
 use palmistry_lang::{Assignment, System};
 use palmistry_math::expression::{NodeId, gradient};
 
-/// A word that is continued, with its value and its differential by all coordinates that move.
+/// A Lie derivative that is continued, with its value and its differential by all coordinates that move.
 #[derive(Clone)]
 struct Link {
-    word: Word,
+    lie_derivative: LieDerivative,
     value: NodeId,
     row: Vec<NodeId>,
 }
 
-/// Expressions of words that are taken by need have no more nodes than this.
+/// Expressions of Lie derivatives that are taken by need have no more nodes than this.
 const MOST_NODES: usize = 2_000_000;
 
 impl Codistribution {
-    /// Takes only words that raise the rank by all coordinates that move, and of longer ones only those that continue one of these: over the
-    /// field of functions the differentials of all others lie in the span of theirs, and so do those of what continues them. On a set that
-    /// fields leave that is no reason: there they are taken where they show all that series have shown, and else what was taken before is.
+    /// Takes only Lie derivatives that raise the rank by all coordinates that move, and of longer ones only those that continue one of these: over the
+    /// field of functions the differentials of all others lie in the span of theirs, and so do those of what continues them. On a set
+    /// that is not invariant this does not hold: there they are kept where they show all that series have shown; otherwise what was taken before is.
     pub(super) fn take_by_need(
         &mut self,
         system: &mut System,
@@ -32,25 +32,25 @@ impl Codistribution {
         let begin = system.graph.len();
         let closed = system.closed_coordinates();
         let mut chain: Vec<Link> = Vec::new();
-        let outputs = (0..system.outputs.len()).map(|output| Word { fields: Vec::new(), output });
-        let mut candidates: Vec<Word> = outputs.collect();
+        let outputs = (0..system.outputs.len()).map(|output| LieDerivative { fields: Vec::new(), output });
+        let mut candidates: Vec<LieDerivative> = outputs.collect();
         let mut evaluated = EvaluatedRows::new(system);
         let ended = if self.invariant { Stop::NoGrowth } else { self.stop };
         let (mut stop, mut taken) = (ended, None);
         while !candidates.is_empty() {
             let before = chain.len();
-            for word in candidates.drain(..) {
-                let output = system.outputs[word.output].1;
+            for lie_derivative in candidates.drain(..) {
+                let output = system.outputs[lie_derivative.output].1;
                 let value = match system.graph.len() - begin > MOST_NODES {
                     true => None,
-                    false => lie_derivative_by_series(system, &word.fields, output).ok(),
+                    false => lie_derivative_by_series(system, &lie_derivative.fields, output).ok(),
                 };
                 let Some(value) = value else {
                     stop = Stop::TooMany;
                     break;
                 };
                 let row = gradient(&mut system.graph, value, &closed);
-                chain.push(Link { word, value, row });
+                chain.push(Link { lie_derivative, value, row });
             }
             let rows: Vec<Vec<NodeId>> = chain.iter().map(|link| link.row.clone()).collect();
             let of_points = evaluated.as_mut().and_then(|evaluated| {
@@ -79,8 +79,9 @@ impl Codistribution {
             }
             for link in &chain[before.min(chain.len())..] {
                 for field in fields {
-                    let fields = std::iter::once(*field).chain(link.word.fields.iter().copied()).collect();
-                    candidates.push(Word { fields, output: link.word.output });
+                    let fields =
+                        std::iter::once(*field).chain(link.lie_derivative.fields.iter().copied()).collect();
+                    candidates.push(LieDerivative { fields, output: link.lie_derivative.output });
                 }
             }
         }
@@ -97,7 +98,7 @@ impl Codistribution {
         Ok(())
     }
 
-    /// The words of a chain that raise the rank by the unknowns; the chain itself where all that moves is unknown.
+    /// The Lie derivatives of a chain that raise the rank by the unknowns; the chain itself where all that moves is unknown.
     fn of_chain(
         &self,
         system: &mut System,
@@ -121,10 +122,10 @@ impl Codistribution {
             false => ((0..chain.len()).collect(), guessed),
         };
         Ok(Codistribution {
-            words: kept.iter().map(|place| chain[*place].word.clone()).collect(),
+            lie_derivatives: kept.iter().map(|place| chain[*place].lie_derivative.clone()).collect(),
             values: kept.iter().map(|place| chain[*place].value).collect(),
             rows: kept.iter().map(|place| rows[*place].clone()).collect(),
-            order: kept.iter().map(|place| chain[*place].word.fields.len()).max().unwrap_or(0),
+            order: kept.iter().map(|place| chain[*place].lie_derivative.fields.len()).max().unwrap_or(0),
             needed: (0..kept.len()).collect(),
             guessed,
             ..self.clone()

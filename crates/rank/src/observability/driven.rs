@@ -1,5 +1,5 @@
 //! All fields of a system at once: the rates of its states with a signal before each input field, and the constants that
-//! conditions tell.
+//! conditions give.
 
 use palmistry_lang::{Assignment, System};
 use palmistry_math::expression::{Graph, NodeId, Symbol};
@@ -40,7 +40,7 @@ pub(super) fn driven(system: &System, graph: &mut Graph) -> Driven {
     Driven { rates: moved.collect(), drives }
 }
 
-/// Those of some conditions that tell a constant its value: they hold at all times, those on states where the flow begins.
+/// The conditions that give a constant its value: they hold at all times, those on states only where the flow begins.
 pub(super) fn told_constants(system: &System, graph: &Graph, conditions: &Assignment) -> Assignment {
     let is_told = |(symbol, value): &(&Symbol, &NodeId)| {
         !system.states.contains(symbol) && graph.symbols_of([**value]).is_empty()

@@ -1,4 +1,4 @@
-//! Some expressions along the flow of a field, taken apart into operations for which there is a recurrence of Taylor
+//! Some expressions along the flow of a field, decomposed into operations for which there is a recurrence of Taylor
 //! coefficients. [`series`](super::series) runs them.
 
 use dashu::rational::RBig;
@@ -173,7 +173,7 @@ fn bare_angle(
         .find(|symbol| is_angle(*symbol))
 }
 
-/// Nodes taken apart into operations for which there is a recurrence.
+/// Nodes decomposed into operations for which there is a recurrence.
 struct Lowering {
     flow: Flow,
     places: HashMap<NodeId, usize>,

@@ -1,7 +1,7 @@
 //! What inequalities and domains leave of a branch: an open part of it, an edge of fewer dimensions, or nothing.
 //!
 //! A rank at almost all states of a branch says something of the states at which inequalities hold only if these make up an open part of the
-//! branch: `x >= 0, x <= 0` leaves one point of a line, at which the rank may be another one. That there is an open part a state shows at which
+//! branch: `x >= 0, x <= 0` leaves one point of a line, at which the rank may be another one. An open part is shown by a state at which
 //! all of them hold strictly. Closed inequalities may leave thin parts besides, as `x^2*(x - 1) >= 0` leaves `x = 0` beside `x >= 1`. Such a part
 //! lies where some of them hold with equality and where no direction leads into all of them at once (the qualification of constraints of
 //! O. L. Mangasarian and S. Fromovitz, 1967). Where all inequalities that hold with equality together are concave there is such a direction,
@@ -36,17 +36,17 @@ pub enum Interior {
     Empty(String),
     /// These expressions vanish wherever all guards hold.
     Flat(Vec<NodeId>),
-    /// The states at which all hold strictly are some, and lie near all others, except perhaps near those at which all expressions of one of
+    /// There are states at which all hold strictly, arbitrarily near all others, except perhaps near those at which all expressions of one of
     /// these lists vanish.
     Open(Vec<Vec<NodeId>>),
-    /// It was not found out; these are the guards.
+    /// It is not known; these are the guards.
     NotKnown(String),
 }
 
 /// What guards leave of a branch; a branch without inequalities is left whole.
 ///
 /// # Errors
-/// In words, where a guard tells apart what the conditions leave open.
+/// In words, where a guard distinguishes what the conditions leave open.
 pub fn interior(system: &mut System, branch: &Branch, guards: &[Guard]) -> Result<Interior, String> {
     if guards.iter().all(|guard| guard.need == Need::NotZero) {
         return Ok(Interior::Open(Vec::new()));
@@ -137,7 +137,7 @@ fn without_a_state(system: &mut System, group: &[Guard], strictly: &Strictly) ->
             flat.push(guard.node);
         }
     }
-    // boxes are slow, and what is flat may tell of the rest
+    // boxes are slow, and what is flat may decide the rest
     let few_symbols = system.graph.symbols_of(group.iter().map(|guard| guard.node)).len() <= MOST_SYMBOLS;
     for guard in asked.iter().take(MOST_BY_BOXES).filter(|_| flat.is_empty() && few_symbols) {
         let back = system.graph.neg(guard.node);

@@ -1,4 +1,4 @@
-//! Where states are drawn from: the sample box of a system, cut by conditions and by values that are held fixed.
+//! Where states are drawn from: the sample box of a system, cut by conditions and by values that are fixed.
 
 use super::conditions::Branch;
 use super::defined::Defined;
@@ -65,12 +65,12 @@ pub struct Locus {
 }
 
 impl Locus {
-    /// The sample box of a system with some symbols held fixed and conditions met. `mentioned` are the expressions
+    /// The sample box of a system with some symbols fixed and conditions met. `mentioned` are the expressions
     /// that will be evaluated; parameters that they do not need are not drawn. What the file gives neither a range nor a value
     /// is drawn from [`System::default_range`].
     ///
     /// # Errors
-    /// Where a needed symbol belongs to nobody.
+    /// Where nothing says what a needed symbol is drawn from.
     pub fn new(
         system: &mut System,
         branch: &Branch,

@@ -1,4 +1,4 @@
-//! Is the state seen in the outputs? Lie derivatives along words of fields, the observability codistribution, the conditions
+//! Is the state observable from the outputs? Lie derivatives, the observability codistribution, the conditions
 //! under which its rank is asked for, and what one matrix of numbers says of it.
 //!
 //! [`Locus`] says where states are drawn from; [`Codistribution`] which differentials are taken. The rank at many states and
@@ -35,7 +35,7 @@ mod symmetry;
 pub use accessibility::{Accessibility, BracketMinor, BracketsSoFar, RankBounds};
 #[doc(hidden)]
 pub use codistribution::OWN_ROWS;
-pub use codistribution::{Codistribution, Frame, Length, Word};
+pub use codistribution::{Codistribution, Frame, Length, LieDerivative};
 pub use conditions::{Branch, Unsolved, parse_condition, solve_conditions};
 #[doc(hidden)]
 pub use conditions::{
@@ -86,8 +86,9 @@ pub use singular::customary_singular_values;
 pub use singular::{Spectrum, singular_values};
 #[doc(hidden)]
 pub use state::float_inputs;
-pub use state::{Coordinate, MissingInput, NamedCoordinate, State, StateInWords};
+pub use state::{Coordinate, MissingInput, NamedCoordinate, State, WrittenState};
 pub use symmetry::{
     FieldComponent, IdentifiableFunction, IdentifiableFunctions, NotReparametrised, ObservableFunction,
-    UnobservableDirections, UnobservableField, identifiable_functions, reparametrise, unseen_motions,
+    UnobservableDirections, UnobservableField, identifiable_functions, reparametrise,
+    unobservable_directions,
 };

@@ -57,7 +57,7 @@ pub(super) fn needed(
         let name = system.symbol_name(angle);
         return Err(CodistributionError::AngleOutside(name.to_owned()));
     }
-    let mut rng = ChaCha8Rng::seed_from_u64(0x0077_6f72_6473); // any fixed seed: the words do not depend on the user's
+    let mut rng = ChaCha8Rng::seed_from_u64(0x0077_6f72_6473); // any fixed seed: the rows do not depend on the user's
     if program.unknown_function(&system.graph).is_some() {
         // what functions satisfy may make a row zero, or a multiple of others
         let guards = system.smooth_guards(&system.moving_fields());

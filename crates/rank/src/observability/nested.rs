@@ -1,8 +1,9 @@
 //! Lie derivatives by num-dual: the second, independent route.
 //!
-//! `L_X h (q)` is the derivative of `h(q + e X(q))` by `e` at zero, so a word of `k` fields is a dual number nested `k`
-//! deep, and its differential one more level, a vector dual. Only the *values* of the fields and of the output are
-//! taken from the expression graph; every rule of differentiation is num-dual's. The cost doubles with each level.
+//! `L_X h (q)` is the derivative of `h(q + e X(q))` by `e` at zero, so a Lie derivative along `k` fields is a dual
+//! number nested `k` deep, and its differential one more level, a vector dual. Only the *values* of the fields and of
+//! the output are taken from the expression graph; every rule of differentiation is num-dual's. The cost doubles with
+//! each level.
 
 use nalgebra::{DVector, Dyn};
 use num_dual::{DualNum, DualVec, gradient};

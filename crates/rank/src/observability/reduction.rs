@@ -1,7 +1,7 @@
 //! Rows that are known before any number is put in: an output that is itself a state has a unit row for its differential.
 //!
-//! Such a row sees its column exactly, whatever the other rows hold there, so that both can be left out before the rank
-//! is decided: `rank = eliminated + rank of what remains`. Singular values are then those of what remains.
+//! Such a row determines its column exactly, whatever the other rows hold there, so that both can be left out before the
+//! rank is decided: `rank = eliminated + rank of what remains`. Singular values are then those of what remains.
 
 use palmistry_math::expression::{Graph, NodeId};
 

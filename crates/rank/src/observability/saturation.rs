@@ -7,14 +7,14 @@
 //!
 //! 1. *The differentials are taken by all coordinates that move and are not measured all the time*: by the unknown ones **and** by
 //!    those of which the initial condition alone is known ([`System::closed_coordinates`]). Let `z1' = z2, z2' = x, x' = 0` with output `z1`, both `z` known
-//!    at the beginning: by `x` alone the span has the dimensions 0, 0, 1. Once the span by all of them rests, the part by the unknown
+//!    initially: by `x` alone the span has the dimensions 0, 0, 1. Once the span by all of them rests, the part by the unknown
 //!    ones does, whichever columns are left out. Known signals need no column: their derivatives are known too, `L_X du` is a
 //!    differential of such.
-//! 2. *The states are those of a set that no field leaves*, or almost all states of an irreducible one: along such a set `L_X a` needs the
+//! 2. *The states are those of an invariant set*, or almost all states of an irreducible one: along such a set `L_X a` needs the
 //!    values of `a` on it and no others. The columns stay those of all coordinates.
 //! 3. *The coefficients have values*: where a minor of `E_k` that has its rank does not vanish, or at almost all states.
 //!
-//! **Where fields leave the set** a rank may rest and grow again. There the rank at almost all states *around* the set, again by all
+//! **Where the set is not invariant** a rank may rest and grow again. There the rank at almost all states *around* the set, again by all
 //! coordinates that move, is a ceiling: rows that have it at a state of the set span the differentials of all Lie derivatives around it, with
 //! coefficients that are analytic there, so that no longer one adds anything ([`Ceiling::Around`]). Below it `generic/orbit.rs` says up to which order
 //! something can be added, where it can.
@@ -29,10 +29,10 @@
 //! `x z/(x y)`, and grows at the next, which shows `x`: the image has `x = 0`, where that quotient has no value.
 //!
 //! Whatever `F` is, the closures of its images shrink at most so often as they lose dimensions, and on the last of them it is
-//! dominant. Images of all states lose one dimension at each of `m` steps, and what is left has `n - m`: with `n` steps taken, the
+//! dominant. Images of all states lose one dimension at each of `m` steps, so that `n - m` remain: with `n` steps taken, the
 //! span rests. A set that is mapped into itself shrinks no more than `n` times either; its rows have `n` columns: `2 n` steps.
 //!
-//! References: A. Isidori, *Nonlinear Control Systems*, 3rd edition (1995), sections 1.7 to 1.9, for the smallest codistribution that fields leave
+//! References: A. Isidori, *Nonlinear Control Systems*, 3rd edition (1995), sections 1.7 to 1.9, for the smallest codistribution that fields keep
 //! invariant and for regular points; H. Nijmeijer, *Observability of autonomous discrete time non-linear systems*, Int. J. Control 36 (1982), for
 //! the spans in discrete time; the argument on images is that of dimensions of irreducible sets.
 
@@ -64,9 +64,9 @@ pub enum Stop {
 /// What bounds a rank from above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ceiling {
-    /// The fields leave no state of the set: what has stopped growing has stopped for good.
+    /// The set is invariant: what has stopped growing has stopped for good.
     Rests,
-    /// They may, and these are the ranks at almost all states around, with known initial conditions as unknown, and of the
+    /// It need not be, and these are the ranks at almost all states around, with known initial conditions as unknown, and of the
     /// unknowns; a rank falls on a special set, and never rises.
     Around {
         /// That of all that moves.
@@ -88,7 +88,7 @@ pub struct RankGrowth {
 }
 
 impl RankGrowth {
-    /// Whether the last order has added nothing. On a set that no field leaves no further one does, in continuous time.
+    /// Whether the last order has added nothing. On an invariant set no further one does, in continuous time.
     pub fn has_ended(self) -> bool {
         self.order > 0 && self.below == self.up_to
     }
@@ -132,7 +132,7 @@ impl Saturation {
         })
     }
 
-    /// Whether the fields leave no state of the set.
+    /// Whether the set is invariant.
     pub fn is_on_an_invariant_set(&self) -> bool {
         self.ceiling == Ceiling::Rests
     }

@@ -6,9 +6,9 @@
 //! cost O(k^2) for each operation of `f` and `h`, over any numbers.
 //!
 //! Over [`Nodes`], whose numbers are expressions, the result is an expression again, of O(k^2) nodes for each node,
-//! where differentiating again and again may double from order to order. A word of several fields is taken run by run
-//! from the inside: `L_f^a L_g^b h` is the series of `h` along `g` in symbols, and then the series of that expression
-//! along `f`.
+//! where differentiating again and again may double from order to order. A Lie derivative along several fields is taken
+//! run by run from the inside: `L_f^a L_g^b h` is the series of `h` along `g` in symbols, and then the series of that
+//! expression along `f`.
 //!
 //! Reference: K. Roebenack, *Computation of multiple Lie derivatives by algorithmic differentiation*, J. Comput. Appl.
 //! Math. 213 (2008).

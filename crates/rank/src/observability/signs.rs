@@ -1,4 +1,4 @@
-//! Absolute values and other roots whose value depends on a sign: the states taken apart by the signs of what they are taken of.
+//! Absolute values and other roots whose value depends on a sign: the states are divided by the signs of the arguments.
 //!
 //! `sqrt(u^2)` is `u` where `u` is positive and `-u` where it is negative. Of functions that are analytic on each part a rank is one
 //! number on each, and may be another one on the next: `x + sqrt(x^2)` has rank 1 where `x > 0` and rank 0 where `x < 0`.
@@ -33,7 +33,7 @@ pub enum Edges {
     Counted,
 }
 
-/// No more parts are told apart.
+/// No more parts are distinguished.
 const MOST_CELLS: usize = 64;
 /// Systems of inequalities with more of them are not looked at.
 const MOST_INEQUALITIES: usize = 400;
@@ -96,8 +96,8 @@ pub fn sign_cells(
     Ok(done)
 }
 
-/// Does something with a system whose outputs and fields are written as they are where the signs hold. The system is what it was
-/// afterwards, its graph larger.
+/// Runs `work` on a system whose outputs and fields are rewritten for these signs. Afterwards the system is what it was, its graph
+/// larger.
 pub fn in_sign_cell<T>(system: &mut System, cell: &SignCell, work: impl FnOnce(&mut System) -> T) -> T {
     if cell.assumed.is_empty() {
         return work(system);

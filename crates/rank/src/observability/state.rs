@@ -53,14 +53,14 @@ pub struct NamedCoordinate {
 }
 
 /// A state in words, in the order of its symbols.
-pub type StateInWords = Vec<NamedCoordinate>;
+pub type WrittenState = Vec<NamedCoordinate>;
 
-/// Why a state has nothing to give to a program.
+/// Why a state lacks an input of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MissingInput {
     /// A number has no image in the arithmetic.
     Refused(Refusal),
-    /// The state says nothing of a symbol, or the program asks for the value of a function.
+    /// The state has no value for a symbol, or the program asks for the value of a function.
     Unsaid,
 }
 
@@ -78,10 +78,10 @@ pub struct State {
 }
 
 impl State {
-    /// What a program needs of this state, in the numbers of an arithmetic.
+    /// The inputs of a program at this state, in the numbers of an arithmetic.
     ///
     /// # Errors
-    /// Where a number has no image there, or where the state says nothing of a symbol.
+    /// Where a number has no image there, or where the state has no value for a symbol.
     pub fn inputs<A: Arithmetic>(
         &self,
         program: &Program,
@@ -105,7 +105,7 @@ impl State {
     }
 
     /// The state in words, with the names of a system.
-    pub fn describe(&self, system: &System) -> StateInWords {
+    pub fn describe(&self, system: &System) -> WrittenState {
         self.values
             .iter()
             .map(|(symbol, value)| NamedCoordinate {

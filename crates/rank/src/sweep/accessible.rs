@@ -23,13 +23,13 @@ const STATES_OF_A_MINOR: u64 = 5;
 pub struct AccessibilityBranch {
     /// The conditions, solved, in words.
     pub conditions: Vec<String>,
-    /// The parameters that the file gives a value to: they were held at it.
+    /// The parameters that the file gives a value to: they were fixed at it.
     pub held: Vec<(String, RBig)>,
     /// The brackets that raised the rank.
     pub brackets: Vec<String>,
     /// The most fields in a bracket that was taken.
     pub order: usize,
-    /// Why no longer ones were.
+    /// Why no longer brackets were taken.
     pub stop: Stop,
     /// The rank of the accessibility distribution at almost all states of the branch.
     pub whole: RankBounds,
@@ -69,7 +69,7 @@ impl AccessibilityAnswer {
 }
 
 /// Answers a question about the rank of a system's accessibility distribution. Of the question's options those that concern
-/// outputs and singular values mean nothing here.
+/// outputs and singular values are not used.
 ///
 /// ```
 /// use palmistry_lang::System;
@@ -97,7 +97,7 @@ pub fn answer_accessibility(
     answer_accessibility_telling(system, question, &mut |_| ())
 }
 
-/// The same; `tell` hears what is known before the end, each time more than before.
+/// The same; `tell` is called with what is known before the end, each time more than before.
 ///
 /// # Errors
 /// As [`answer_accessibility`].

@@ -1,4 +1,4 @@
-//! What is asked of a rank, and what is held fixed where it is.
+//! What is asked of a rank, and what is fixed where it is.
 
 use crate::observability::Branch;
 use crate::sweep::certainty::Certainty;
@@ -11,17 +11,17 @@ use std::sync::atomic::AtomicBool;
 
 /// What is asked.
 pub struct RankQuestion<'a> {
-    /// States drawn on each branch of the conditions; none, and no words are taken either.
+    /// States drawn on each branch of the conditions; with zero no Lie derivatives are taken either.
     pub samples: u64,
     /// The seed of the drawn states.
     pub seed: u64,
-    /// What every rank has to be, at the least.
+    /// How certain every rank has to be, at the least.
     pub wanted: Certainty,
     /// To how many digits the singular values of the worst conditioned state are wanted, if doubles will not do.
     pub digits: Option<usize>,
-    /// Words of exactly up to so many fields; otherwise until the rank stops growing.
+    /// Lie derivatives up to exactly this order; otherwise until the rank stops growing.
     pub order: Option<usize>,
-    /// Symbols held fixed.
+    /// Symbols that are fixed, with their values.
     pub fixed: BTreeMap<Symbol, RBig>,
     /// Conditions in the language, such as `sin(phi1) = 0`.
     pub conditions: Vec<String>,
@@ -34,7 +34,8 @@ pub struct RankQuestion<'a> {
 }
 
 impl Default for RankQuestion<'_> {
-    /// A thousand states of the sample box, every rank certified, from words that are taken until the rank stops growing.
+    /// A thousand states of the sample box, every rank certified, from Lie derivatives taken until the rank stops
+    /// growing.
     fn default() -> Self {
         RankQuestion {
             samples: 1000,
@@ -78,7 +79,7 @@ pub(crate) fn held_conditions(
     question: &RankQuestion<'_>,
     branch: &Branch,
 ) -> Assignment {
-    // values that are held fixed are conditions too, but for angles, whose values are no rational half turns
+    // values that are fixed are conditions too, but for angles, whose values are no rational half turns
     let mut conditions = branch.values.clone();
     for (symbol, value) in &question.fixed {
         if !system.is_angle(*symbol) || value.is_zero() {

@@ -1,4 +1,4 @@
-//! The branches of a question, taken apart by the signs on which roots of squares depend.
+//! The branches of a question, divided by the signs on which roots of squares depend.
 
 use super::asked::{RankQuestion, held_conditions};
 use crate::observability::{Branch, Edges, Locus, SignCell, sign_cells};
@@ -36,12 +36,12 @@ pub(super) fn by_signs(
         let guards = system.substitute_guards(&guards, &held);
         let cells = match sign_cells(system, &there, &guards, Edges::LeftOut) {
             Ok(cells) => cells,
-            // too many to be told apart: the states are looked at as they are
+            // too many to be distinguished: the states are looked at as they are
             Err(_) => vec![SignCell::default()],
         };
         let several = cells.len() > 1;
         for cell in cells {
-            // what the conditions give may leave nothing of it
+            // with what the conditions give it may be empty
             let given = system.substitute_guards(&cell.guards, &branch.values);
             if given.iter().any(|guard| guard.is_obvious(&system.graph) == Some(false)) {
                 continue;

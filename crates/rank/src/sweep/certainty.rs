@@ -5,6 +5,6 @@
 pub enum Certainty {
     /// Proved for the very state.
     Certified,
-    /// By numbers that round, or that cannot tell zero from very small.
+    /// By numbers that round, or that cannot distinguish zero from very small.
     Computed,
 }

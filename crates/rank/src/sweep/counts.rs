@@ -1,10 +1,10 @@
 //! What a sweep has counted: all that the sums of several sweeps need, so that it does not matter where one is cut into parts.
 
 use super::certainty::Certainty;
-use super::ladder::{RankDecider, StateDecision, StateReport};
+use super::escalation::{RankDecider, StateDecision, StateReport};
 use super::unobservable::UnseenDirections;
 use crate::observability::State;
-use palmistry_math::number::Rung;
+use palmistry_math::number::NumberType;
 use std::collections::BTreeMap;
 
 /// A state of full rank, with the ratio of singular values by which it is the worst of those before it.
@@ -32,7 +32,7 @@ pub(super) struct SweepCounts {
     pub samples: u64,
     pub certified: u64,
     pub disagreements: u64,
-    pub rungs: BTreeMap<Rung, u64>,
+    pub number_types: BTreeMap<NumberType, u64>,
     pub ranks: BTreeMap<usize, u64>,
     pub computed: BTreeMap<usize, u64>,
     pub poles: BTreeMap<String, u64>,
@@ -44,7 +44,7 @@ pub(super) struct SweepCounts {
     pub smallest_gap: Option<f64>,
     /// Whether not all states were looked at that were to be.
     pub interrupted: bool,
-    /// How long it took, in s; nothing where that is not told.
+    /// How long it took, in s; nothing where that is not recorded.
     pub seconds: Option<f64>,
 }
 
@@ -65,7 +65,7 @@ impl SweepCounts {
         ] {
             *mine = mine.saturating_add(theirs);
         }
-        add_all(&mut self.rungs, later.rungs);
+        add_all(&mut self.number_types, later.number_types);
         add_all(&mut self.ranks, later.ranks);
         add_all(&mut self.computed, later.computed);
         add_all(&mut self.poles, later.poles);
@@ -100,11 +100,12 @@ impl SweepCounts {
             }
             StateDecision::Report(report) => report,
         };
-        let StateReport { rank, certainty, rung, spectrum, computed, unobservable, hidden, .. } = report;
+        let StateReport { rank, certainty, number_type, spectrum, computed, unobservable, hidden, .. } =
+            report;
         self.samples += 1;
         *self.ranks.entry(rank).or_insert(0) += 1;
         self.certified += u64::from(certainty == Certainty::Certified);
-        *self.rungs.entry(rung).or_insert(0) += 1;
+        *self.number_types.entry(number_type).or_insert(0) += 1;
         for direction in &unobservable {
             self.unobservable.add(unknowns, direction, index);
         }
@@ -114,7 +115,7 @@ impl SweepCounts {
         if !without_example.is_empty() {
             let (mut unobservable, mut exact) = (decider.unobservable(state), true);
             if unobservable.is_empty() {
-                (unobservable, exact) = (decider.unseen_nearly(state), false);
+                (unobservable, exact) = (decider.nearly_unobservable(state), false);
             }
             for direction in unobservable {
                 let parts: Vec<bool> = direction.iter().map(|part| !part.is_zero()).collect();

@@ -2,30 +2,30 @@
 
 use super::scales::{DrawnStates, MeasuredRows, Scales};
 use super::states::SweepReport;
-use crate::observability::{Codistribution, Locus, LocusError, StateInWords};
+use crate::observability::{Codistribution, Locus, LocusError, WrittenState};
 use palmistry_lang::System;
 use palmistry_math::expression::{NodeId, Symbol};
 
 /// From this on a state is called nearly invisible: no instrument has six digits in its derivatives.
 pub const NEARLY_INVISIBLE: f64 = 1e6;
 
-/// How well one state is seen.
+/// How well one state is observable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StandardDeviation {
     /// The state's name.
     pub state: String,
-    /// Its own spread over the sample box, in its own unit; one where it has none.
+    /// Its spread (prior standard deviation) over the sample box, in its own unit; one where it has none.
     pub spread: f64,
-    /// The middle one of its standard deviations at the states that were looked at, in parts of its spread. Infinite where it
-    /// is not seen, or where doubles cannot tell.
+    /// The median of its standard deviations at the states that were looked at, normalised by its spread. Infinite where it is
+    /// unobservable, or where doubles cannot decide.
     pub median: f64,
     /// The greatest of them.
     pub worst: f64,
     /// At how many states it is infinite.
     pub infinite: usize,
-    /// Whether the ranks of the sweep say that it is seen at every state: where it is infinite all the same, doubles cannot
-    /// tell how well.
-    pub is_seen: bool,
+    /// Whether the ranks of the sweep say that it is observable at every state: where it is infinite all the same, doubles cannot say
+    /// how well.
+    pub is_observable: bool,
 }
 
 /// The state of the system that is observable least, where it is so.
@@ -36,16 +36,16 @@ pub struct LeastObservable {
     /// Its standard deviation there over its prior one; may be infinite.
     pub deviation: f64,
     /// Where.
-    pub at: StateInWords,
+    pub at: WrittenState,
 }
 
-/// How well each state is seen, at some states of a sweep.
+/// How well each state is observable, at some states of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StandardDeviations {
     /// At how many states.
     pub states: usize,
-    /// The words that are measured, and the spread of each, which is the unit of its noise.
-    pub words: Vec<(String, f64)>,
+    /// The Lie derivatives that are measured, and the spread of each, which is the unit of its noise.
+    pub lie_derivatives: Vec<(String, f64)>,
     /// A row for each state of the system, in the order of the file.
     pub list: Vec<StandardDeviation>,
     /// The worst of them all; nothing of a system without states.
@@ -54,8 +54,8 @@ pub struct StandardDeviations {
     pub may_be_finite: bool,
 }
 
-/// Whether a sweep says of a state of the system that it is seen at every state that was drawn.
-fn is_seen(system: &System, state: Symbol, swept: &SweepReport) -> bool {
+/// Whether a sweep says of a state of the system that it is observable at every state that was drawn.
+fn is_observable(system: &System, state: Symbol, swept: &SweepReport) -> bool {
     let name = system.symbol_name(state);
     let is_full = swept.rank_histogram.keys().all(|rank| *rank == system.unknown_count());
     let is_told = swept.certified == swept.samples;
@@ -64,8 +64,8 @@ fn is_seen(system: &System, state: Symbol, swept: &SweepReport) -> bool {
             && !swept.unobservable.iter().any(|direction| direction.states.iter().any(|part| part == name))
 }
 
-/// How well each state is seen by the words that were needed, at up to two hundred states drawn from a locus; those that the
-/// sweep left out, since something does not exist there, are left out here too.
+/// How well each state is observable by the Lie derivatives that were needed, at up to two hundred states drawn from a locus; those
+/// that the sweep left out, since something does not exist there, are left out here too.
 ///
 /// # Errors
 /// Where states cannot be drawn.
@@ -76,7 +76,8 @@ pub(crate) fn standard_deviations(
     swept: &SweepReport,
     (seed, samples): (u64, u64),
 ) -> Result<Option<StandardDeviations>, LocusError> {
-    let values: Vec<NodeId> = codistribution.needed.iter().map(|word| codistribution.values[*word]).collect();
+    let values: Vec<NodeId> =
+        codistribution.needed.iter().map(|lie_derivative| codistribution.values[*lie_derivative]).collect();
     let rows = MeasuredRows { entries: codistribution.needed_entries(), values: Some(values) };
     let drawn = DrawnStates::new(system, locus, &rows, seed, samples)?;
     if drawn.states.is_empty() {
@@ -94,7 +95,7 @@ pub(crate) fn standard_deviations(
             median: each[each.len() / 2],
             worst: each[each.len() - 1],
             infinite: each.iter().filter(|deviation| deviation.is_infinite()).count(),
-            is_seen: is_seen(system, *symbol, swept),
+            is_observable: is_observable(system, *symbol, swept),
         }
     });
     let list = list.collect();
@@ -111,7 +112,16 @@ pub(crate) fn standard_deviations(
         deviation,
         at: drawn.states[place].describe(system),
     });
-    let words = codistribution.needed.iter().map(|word| codistribution.words[*word].text(system));
-    let words = words.zip(scales.noise).collect();
-    Ok(Some(StandardDeviations { states: drawn.states.len(), words, list, least, may_be_finite: false }))
+    let lie_derivatives = codistribution
+        .needed
+        .iter()
+        .map(|lie_derivative| codistribution.lie_derivatives[*lie_derivative].text(system));
+    let lie_derivatives = lie_derivatives.zip(scales.noise).collect();
+    Ok(Some(StandardDeviations {
+        states: drawn.states.len(),
+        lie_derivatives,
+        list,
+        least,
+        may_be_finite: false,
+    }))
 }

@@ -84,8 +84,8 @@ impl Fingerprint {
     }
 }
 
-/// That of a question as it is asked: its system, and all options on which what is found at a state depends. What is told of the worst
-/// state beside, as its digits, is no part of it.
+/// The number of a question as it is asked: of its system, and of all options on which what is found at a state depends. What is
+/// reported of the worst state besides, such as its digits, is no part of it.
 pub(super) fn of_question(system: &System, question: &RankQuestion<'_>, only_if_short: bool) -> u64 {
     let mut found = Fingerprint::default();
     found.system(system);

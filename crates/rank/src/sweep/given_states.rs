@@ -1,8 +1,8 @@
-//! The rank at states that are handed over as doubles, wherever they lie: by blocks where these can tell, else state by state on the
-//! ladder. What a row says is what the table of a sweep says of a state that it drew.
+//! The rank at states that are handed over as doubles, wherever they lie: by blocks where these can decide, else state by state by one
+//! number type after the other. A row says of a state what the table of a sweep says of a drawn one.
 
 use super::certainty::Certainty;
-use super::ladder::RankDecider;
+use super::escalation::RankDecider;
 use super::prepared::row_of;
 use super::stream::{StateVerdict, StatesError, Stream, Verdicts, held};
 use super::table::StateRow;
@@ -13,7 +13,7 @@ use palmistry_math::number::rational_from_f64;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// States that one thread takes at a time; between them, and between any two that go to the ladder, an interrupt is looked at.
+/// States that one thread takes at a time; between them, and between any two that are decided one by one, an interrupt is looked at.
 const CHUNK: usize = 512;
 
 /// What decides states that are handed over.
@@ -46,14 +46,14 @@ impl GivenStates {
         GivenStates { stream, decider, locus, coordinates, most, wanted }
     }
 
-    /// What has to be said of a state, in this order; everything else follows from it or has one value.
+    /// The coordinates that have to be given for a state, in this order; all others follow from these or have one value.
     pub fn coordinates(&self) -> &[Symbol] {
         &self.coordinates
     }
 
     /// A row for each state, without coordinates; the states are given by a slice for each of [`GivenStates::coordinates`], angles in
     /// radians. Whether they lie in the sample box is not asked. Where something is infinite, not a number or a pole there is no rank.
-    /// Nothing where it was interrupted.
+    /// `None` where it was interrupted.
     ///
     /// # Errors
     /// Where there are more or fewer slices than coordinates, or where they are not of one length.
@@ -113,7 +113,7 @@ impl GivenStates {
         let mut left: Vec<usize> = (0..count).collect();
         if let Some(stream) = &self.stream {
             let mut found = Verdicts::default();
-            // with bounds on all errors whatever is wanted, as a stream of drawn states: what is proved is told
+            // with bounds on all errors whatever is wanted, as a stream of drawn states: what is proved is reported
             stream.verdicts(states, Certainty::Certified, &mut found)?;
             let full = stream.full_rank();
             let value = |values: Option<&Vec<f64>>, place: usize| values.map(|values| values[place]);

@@ -10,7 +10,7 @@ use palmistry_math::expression::Guard;
 /// nowhere.
 ///
 /// # Errors
-/// Where nothing is left, or such a set cannot be solved; and where it is not known what is left, if no state is to be drawn.
+/// Where nothing remains, or such a set cannot be solved; and where it is not known what remains, if no state is to be drawn.
 pub(super) fn left_by_inequalities(
     system: &mut System,
     question: &RankQuestion<'_>,
@@ -35,7 +35,7 @@ pub(super) fn left_by_inequalities(
                 Err(why) if !why.may_be_met() => {}
                 Err(why) => return Err(why.into()),
             },
-            // states that are drawn tell
+            // states that are drawn decide
             Interior::NotKnown(_) if question.samples > 0 => found.push(branch),
             Interior::NotKnown(words) => {
                 let why = format!("no state was found at which all of these hold: {words}");

@@ -1,5 +1,5 @@
-//! The rank at many states: how certain it is at each, on the cheapest rung of the ladder of numbers that can tell, and what is
-//! seen of all of them together.
+//! The rank at many states: how certain it is at each, on the cheapest number type that can decide, and what is observable at
+//! all of them together.
 //!
 //! [`answer_rank`] takes a whole question; [`sweep`] decides every state that a [`Locus`](crate::observability::Locus) draws,
 //! once by singular values (*computed*) and once by exact arithmetic at that very state (*certified*); a [`Stream`] does so
@@ -14,9 +14,9 @@ mod certainty;
 mod counts;
 mod deviation;
 mod digits;
+mod escalation;
 mod fingerprint;
 mod given_states;
-mod ladder;
 mod left;
 mod paid;
 mod part;
@@ -46,10 +46,10 @@ pub use deviation::{LeastObservable, StandardDeviation, StandardDeviations};
 pub use digits::MOST_DIGITS;
 pub use digits::{Digits, NoDigits};
 #[doc(hidden)]
+pub use escalation::{DecidedRows, ProofWanted, RankDecider, StateDecision, StateReport};
+#[doc(hidden)]
 pub use fingerprint::Fingerprint;
 pub use given_states::GivenStates;
-#[doc(hidden)]
-pub use ladder::{DecidedRows, ProofWanted, RankDecider, StateDecision, StateReport};
 pub use palmistry_io::parts::PartError;
 pub use part::{MergeError, RankPart, shard_of};
 pub use preparation::{RankPreparation, answer_rank, answer_rank_at_once};

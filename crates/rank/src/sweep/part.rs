@@ -26,7 +26,7 @@ pub(super) struct BranchCounts {
     pub rows: Option<SweepCounts>,
 }
 
-/// Why parts do not make a whole. Parts are called by the names that they were given.
+/// Why parts cannot be merged. They are called by the names that the caller gave them.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // names and messages say it
 pub enum MergeError {
@@ -57,7 +57,7 @@ impl From<NoCover> for MergeError {
     }
 }
 
-/// The states of shard `number` of `of`, counted from one: of so many states a stretch that differs from the others by one at most.
+/// The states of shard `number` of `of`, counted from one: the numbers of states in two shards differ by at most one.
 ///
 /// ```
 /// use palmistry_rank::sweep::shard_of;
@@ -78,7 +78,7 @@ impl RankPart {
         self.first..self.last
     }
 
-    /// What was asked, as [`RankPreparation::fingerprint`](super::RankPreparation::fingerprint) tells it.
+    /// What was asked, as [`RankPreparation::fingerprint`](super::RankPreparation::fingerprint) computes it.
     pub fn fingerprint(&self) -> u64 {
         self.asked
     }

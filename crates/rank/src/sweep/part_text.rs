@@ -1,6 +1,6 @@
 //! A part of a sweep as JSON that is whole or refused.
 //!
-//! It tells no times, so that whoever sweeps the same states writes the same to the last byte.
+//! It contains no times, so that whoever sweeps the same states writes the same to the last byte.
 
 use super::counts::{SweepCounts, WorstState};
 use super::part::{BranchCounts, RankPart};
@@ -8,7 +8,7 @@ use super::unobservable::{UnseenDirections, UnseenExample, UnseenKind};
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
 use palmistry_io::parts::{Bits, CONTRADICTS, PartError, seal, unseal};
-use palmistry_math::number::Rung;
+use palmistry_math::number::NumberType;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
@@ -51,7 +51,7 @@ impl RankPart {
             let seen = poles.and_then(|poles| counts.samples.checked_add(poles));
             (seen == looked_at || seen == Some(0))
                 && sum(&mut counts.ranks.values()) == all
-                && sum(&mut counts.rungs.values()) == all
+                && sum(&mut counts.number_types.values()) == all
                 && sum(&mut counts.computed.values()) <= all
                 && counts.certified <= counts.samples
                 && counts.disagreements <= counts.samples
@@ -120,7 +120,7 @@ struct WrittenCounts {
     samples: u64,
     certified: u64,
     computed_differs: u64,
-    decided_by: Vec<(Rung, u64)>,
+    decided_by: Vec<(NumberType, u64)>,
     ranks: BTreeMap<usize, u64>,
     computed_ranks: BTreeMap<usize, u64>,
     poles: BTreeMap<String, u64>,
@@ -197,7 +197,11 @@ impl WrittenCounts {
             samples: counts.samples,
             certified: counts.certified,
             computed_differs: counts.disagreements,
-            decided_by: counts.rungs.iter().map(|(rung, count)| (*rung, *count)).collect(),
+            decided_by: counts
+                .number_types
+                .iter()
+                .map(|(number_type, count)| (*number_type, *count))
+                .collect(),
             ranks: counts.ranks.clone(),
             computed_ranks: counts.computed.clone(),
             poles: counts.poles.clone(),
@@ -223,7 +227,7 @@ impl WrittenCounts {
             samples: self.samples,
             certified: self.certified,
             disagreements: self.computed_differs,
-            rungs: self.decided_by.into_iter().collect(),
+            number_types: self.decided_by.into_iter().collect(),
             ranks: self.ranks,
             computed: self.computed_ranks,
             poles: self.poles,

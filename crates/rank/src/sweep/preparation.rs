@@ -17,8 +17,8 @@ use palmistry_lang::{System, Value};
 use palmistry_math::expression::{NodeId, Symbol};
 use std::ops::Range;
 
-/// A question about a rank with all that is done once, before states are looked at: conditions are solved, words taken, rows made
-/// ready. What is found at the state of an index depends on the question and the index alone.
+/// A question about a rank with all that is done once, before states are looked at: conditions are solved, Lie derivatives taken,
+/// rows made ready. What is found at the state of an index depends on the question and the index alone.
 ///
 /// ```
 /// use palmistry_lang::System;
@@ -60,7 +60,8 @@ impl<'q> RankPreparation<'q> {
         RankPreparation::telling(system, question, false, &mut |_| ())
     }
 
-    /// The same, but states are drawn only where the words that show what is seen are short enough to be written down in a moment.
+    /// The same, but states are drawn only where the Lie derivatives that decide observability are short enough to be written down
+    /// in a moment.
     ///
     /// # Errors
     /// As for [`RankPreparation::new`].
@@ -68,13 +69,14 @@ impl<'q> RankPreparation<'q> {
         RankPreparation::telling(system, question, true, &mut |_| ())
     }
 
-    /// What a question is, as a number, without anything being prepared: two that differ in what is found at any state have
+    /// A question as a number, without anything being prepared: two that differ in what is found at any state have
     /// different numbers, but for one chance in 2^64.
     pub fn fingerprint(system: &System, question: &RankQuestion<'_>, at_once: bool) -> u64 {
         of_question(system, question, at_once)
     }
 
-    /// The one or the other, and tells of each branch what holds at almost all of its states as soon as that is known.
+    /// The one or the other; `known` is called for each branch with what holds at almost all of its states, as soon as that is
+    /// known.
     ///
     /// # Errors
     /// As for [`RankPreparation::new`], and where it takes more than a question may.
@@ -188,11 +190,11 @@ impl<'q> RankPreparation<'q> {
         symbols
     }
 
-    /// What decides states that are handed over instead of drawn, also such as lie outside of the sample box.
+    /// Decides states that are handed over instead of drawn, also outside of the sample box.
     ///
     /// # Errors
     /// Conditions with several branches, roots whose sign depends on where the state lies (what holds on one side does not on the
-    /// other), and words too long to be written down.
+    /// other), and Lie derivatives too long to be written down.
     pub fn at_given_states(mut self, system: &mut System) -> Result<GivenStates, RankError> {
         let no = |why: &str| RankError::NotAtGivenStates(why.to_owned());
         let branch = self.branches.pop().filter(|_| self.branches.is_empty());
@@ -259,7 +261,8 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
     in_one_part(system, prepared)
 }
 
-/// The same, but states are drawn only where the words that show what is seen are short enough to be written down in a moment.
+/// The same, but states are drawn only where the Lie derivatives that decide observability are short enough to be written down in a
+/// moment.
 ///
 /// # Errors
 /// As for [`answer_rank`].

@@ -3,8 +3,8 @@
 use super::certainty::Certainty;
 use super::counts::{SweepCounts, WorstState};
 use super::digits::NoDigits;
+use super::escalation::{DecidedRows, ProofWanted, RankDecider, StateDecision, StateReport};
 use super::fingerprint::Fingerprint;
-use super::ladder::{DecidedRows, ProofWanted, RankDecider, StateDecision, StateReport};
 use super::states::{RecordedState, Stretch, SweepOptions, SweepReport, Told};
 use super::stream::{Stream, StreamOptions};
 use super::table::{StateRow, TableOf, put_in};
@@ -12,7 +12,7 @@ use crate::observability::{Codistribution, Defined, Locus, LocusError, Probe, Sp
 use palmistry_budget::Share;
 use palmistry_lang::System;
 use palmistry_math::expression::{Graph, NodeId, add_guard, expand_angles};
-use palmistry_math::number::{PrimeField, Rung};
+use palmistry_math::number::{NumberType, PrimeField};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -184,7 +184,7 @@ impl PreparedSweep {
             counts.samples += decided;
             counts.certified += found.certified;
             *counts.ranks.entry(full).or_insert(0) += decided;
-            *counts.rungs.entry(Rung::Doubles).or_insert(0) += decided;
+            *counts.number_types.entry(NumberType::Doubles).or_insert(0) += decided;
             *counts.computed.entry(full).or_insert(0) += decided - found.denied;
             counts.disagreements += found.denied;
         }
@@ -221,7 +221,7 @@ impl PreparedSweep {
         Ok(rows)
     }
 
-    /// The worst conditioned of all states, by the numbers that tell it best.
+    /// The worst conditioned of all states, whether decided one by one or in a stream.
     fn worst(&self, counts: &SweepCounts) -> Result<Option<(State, Spectrum)>, LocusError> {
         let decided = |worst: Option<WorstState>| -> Result<_, LocusError> {
             let Some(WorstState { index, .. }) = worst else { return Ok(None) };
@@ -264,8 +264,8 @@ impl PreparedSweep {
             computed_histogram: counts.computed,
             certified: counts.certified,
             disagreements: counts.disagreements,
-            rungs: counts.rungs,
-            first: if self.stream.is_some() { Rung::Doubles } else { Rung::Intervals },
+            number_types: counts.number_types,
+            first: if self.stream.is_some() { NumberType::Doubles } else { NumberType::Intervals },
             remaining: self.stream.as_ref().map_or(self.decider.remaining(), Stream::remaining),
             poles: counts.poles,
             worst: worst.map(|(state, spectrum)| (state.describe(system), spectrum)),
@@ -305,7 +305,7 @@ impl PreparedSweep {
                 } else {
                     share.carry(|| self.decider.unobservable(&state))
                 };
-                // a short rank is checked by what is not seen, exactly
+                // a short rank is checked by the exact unobservable directions
                 (rank + unobservable.len() == self.decider.columns()).then_some(RecordedState {
                     state,
                     rank,

@@ -1,5 +1,5 @@
-//! One branch of the conditions of a question about a rank: what is made ready before any state is looked at, and what is told once
-//! all were.
+//! One branch of the conditions of a question about a rank: what is made ready before any state is looked at, and what is reported
+//! once all were.
 
 use super::asked::{RankQuestion, held_conditions};
 use super::certainty::Certainty;
@@ -16,7 +16,8 @@ use super::states::{Stretch, SweepOptions, SweepReport, Told};
 use super::stream::Stream;
 use super::table::TableOf;
 use crate::observability::{
-    Branch, Codistribution, Frame, Length, Locus, Probe, SignCell, UnobservableDirections, unseen_motions,
+    Branch, Codistribution, Frame, Length, Locus, Probe, SignCell, UnobservableDirections,
+    unobservable_directions,
 };
 use palmistry_lang::{Assignment, System, Time};
 use palmistry_math::expression::{Graph, Guard, NodeId, Symbol, expand_angles};
@@ -25,7 +26,7 @@ use std::sync::atomic::Ordering;
 /// What the full codistribution is decided by.
 pub(super) enum ByStates {
     Rows(Box<PreparedSweep>),
-    /// Where its words are too long to be written down.
+    /// Where its Lie derivatives are too long to be written down.
     Series(Box<PreparedSeries>),
 }
 
@@ -61,7 +62,7 @@ pub(super) struct PreparedBranch {
     pub cell: SignCell,
     /// States that are drawn on it.
     pub samples: u64,
-    /// Whether states were asked for, and words for them.
+    /// Whether states were asked for, and Lie derivatives for them.
     wanted: bool,
     conditions: Assignment,
     /// Those of them that the question gives.
@@ -99,11 +100,11 @@ impl PreparedBranch {
         let length = question.order.map_or(Length::UntilItStops, Length::Exactly);
         let frame = Frame::new(system, &conditions)?;
         known(GenericOnBranch::new(system, branch, &frame));
-        let wanted = extent.samples > 0 && (!extent.only_if_short || frame.words_are_short(system));
+        let wanted = extent.samples > 0 && (!extent.only_if_short || frame.lie_derivatives_are_short(system));
         let samples = if wanted { extent.samples } else { 0 };
         let codistribution = match wanted {
             true => Codistribution::within(system, &conditions, length, frame)?,
-            false => Codistribution::without_words(frame),
+            false => Codistribution::without_lie_derivatives(frame),
         };
         let all = codistribution.entries();
         let mut mentioned: Vec<NodeId> = all.clone();
@@ -121,7 +122,7 @@ impl PreparedBranch {
             interrupt: question.interrupt,
             progress: question.progress,
         };
-        // words that somebody asked for are looked at as they are; functions have no residues at a state
+        // Lie derivatives that somebody asked for are looked at as they are; functions have no residues at a state
         let has_series = wanted && question.order.is_none() && system.time == Time::Continuous;
         let probe =
             has_series.then(|| Probe::new(system, &conditions)).filter(|probe| !probe.has_functions());
@@ -131,7 +132,7 @@ impl PreparedBranch {
             }
             probe => {
                 let quick = codistribution.needed_entries();
-                let further = probe.filter(|_| system.longest_word().is_none());
+                let further = probe.filter(|_| system.highest_lie_order().is_none());
                 let rows = PreparedSweep::new(system, &locus, &quick, &all, &options);
                 ByStates::Rows(Box::new(rows.looking_further(further)))
             }
@@ -153,7 +154,7 @@ impl PreparedBranch {
         })
     }
 
-    /// What decides states that are handed over; none where there are no words.
+    /// What decides states that are handed over; none where there are no Lie derivatives.
     pub fn into_given_states(self, system: &mut System, wanted: Certainty) -> Option<GivenStates> {
         let ByStates::Rows(prepared) = self.full else { return None };
         if !self.wanted {
@@ -213,39 +214,49 @@ impl PreparedBranch {
         };
         codistribution.generic.seen_at_states(system, &full);
         let known = codistribution.generic.is_final() && question.order.is_none();
-        // fields are found in one go: who does not wait is told what there is without them
+        // fields are found in one go: who does not wait gets what there is without them
         let motions = match interrupt.load(Ordering::Relaxed) {
             true => None,
             false => motions(system, &codistribution, &conditions, &given),
         };
         let generic_rank =
             codistribution.generic.rank().filter(|_| known).unwrap_or(codistribution.generic_rank());
-        // words that were not taken show nothing, and series do
+        // Lie derivatives that were not taken show nothing, and series do
         let generic_rank = match wanted {
             true => generic_rank,
             false => generic_rank.max(codistribution.generic.at_least),
         };
-        // fields settle what the rank of all words is, and these words may be fewer
+        // fields settle what the rank of all Lie derivatives is, and these Lie derivatives may be fewer
         let settled = motions.as_ref().is_some_and(|found| {
             found.settles_the_rank && generic_rank + found.directions() == system.unknown_count()
         });
         let is_final = codistribution.is_final() || known || settled;
-        let word = |(word, entries): (&crate::observability::Word, &Vec<NodeId>)| TakenRow {
-            word: word.text(system),
-            entries: entries.clone(),
-        };
+        let lie_derivative =
+            |(lie_derivative, entries): (&crate::observability::LieDerivative, &Vec<NodeId>)| TakenRow {
+                lie_derivative: lie_derivative.text(system),
+                entries: entries.clone(),
+            };
         let numbered = |(index, entries): (usize, &[NodeId])| TakenRow {
-            word: format!("row {}", index + 1),
+            lie_derivative: format!("row {}", index + 1),
             entries: entries.to_vec(),
         };
         let own_rows = own.unwrap_or_default().chunks(system.unknown_count());
         let mut answer = BranchAnswer {
-            taken: codistribution.words.iter().zip(&codistribution.rows).map(word).collect(),
+            taken: codistribution
+                .lie_derivatives
+                .iter()
+                .zip(&codistribution.rows)
+                .map(lie_derivative)
+                .collect(),
             own: own_rows.enumerate().map(numbered).collect(),
             conditions: locus.conditions.clone(),
             by_default: locus.by_default.clone(),
             held: held_parameters(system, question, &branch.values, own.into_iter().flatten()),
-            words: codistribution.needed.iter().map(|i| codistribution.words[*i].text(system)).collect(),
+            lie_derivatives: codistribution
+                .needed
+                .iter()
+                .map(|i| codistribution.lie_derivatives[*i].text(system))
+                .collect(),
             unknowns: named_unknowns(system),
             order: codistribution.order,
             stop: codistribution.stop,
@@ -273,7 +284,8 @@ impl PreparedBranch {
     }
 }
 
-/// The unseen fields, where something is unseen and all conditions are on parameters; `given` are those of the question.
+/// The unobservable fields, where something is unobservable and all conditions are on parameters; `given` are those of the
+/// question.
 fn motions(
     system: &mut System,
     codistribution: &Codistribution,
@@ -290,6 +302,6 @@ fn motions(
         return None;
     }
     let given = given.iter().map(|symbol| (*symbol, conditions[symbol])).collect();
-    let found = unseen_motions(system, Some(codistribution), conditions, &given)?;
+    let found = unobservable_directions(system, Some(codistribution), conditions, &given)?;
     (found.directions() > 0).then_some(found)
 }

@@ -15,9 +15,9 @@ use std::collections::HashSet;
 
 /// A row whose rank was decided.
 pub struct TakenRow {
-    /// The word of which it is the differential; of the file's own rows, their number, counted from one.
-    pub word: String,
-    /// Its entries, one for each state of the system.
+    /// The Lie derivative of which it is the differential; of the file's own rows, their number, counted from one.
+    pub lie_derivative: String,
+    /// Its entries, one for each unknown of the system.
     pub entries: Vec<NodeId>,
 }
 
@@ -25,33 +25,33 @@ pub struct TakenRow {
 pub struct BranchAnswer {
     /// The conditions, solved, in words.
     pub conditions: Vec<String>,
-    /// The parameters that the rank depends on and the file gives a value to: they were held at it. A claim about the rank is
+    /// The parameters that the rank depends on and the file gives a value to: they were fixed at it. A claim about the rank is
     /// about all values.
     pub held: Vec<(String, RBig)>,
     /// What is drawn from a range that the file does not give, and this range.
     pub by_default: Vec<(String, Range)>,
-    /// The words that were needed, as a paper writes them.
-    pub words: Vec<String>,
-    /// What is seen at almost all states of the branch, and of each unknown whether it is.
+    /// The Lie derivatives that were needed, as a paper writes them.
+    pub lie_derivatives: Vec<String>,
+    /// What is observable at almost all states of the branch, and whether each unknown is.
     pub generic: GenericAnswer,
     /// The unknowns: their names and what they are.
     pub unknowns: Vec<(String, UnknownKind)>,
-    /// The length of the longest word taken, and why no longer ones were.
+    /// The length of the longest Lie derivative taken, and why no longer ones were.
     pub order: usize,
-    /// Why no longer words were taken.
+    /// Why no longer Lie derivatives were taken.
     pub stop: Stop,
-    /// The rank at almost all states of the branch, by these words.
+    /// The rank at almost all states of the branch, by these Lie derivatives.
     pub generic_rank: usize,
-    /// Whether longer words cannot raise it there.
+    /// Whether longer Lie derivatives cannot raise it there.
     pub is_final: bool,
-    /// Whether the rank is not known because no longer words were looked at, though nobody asked for shorter ones.
+    /// Whether the rank is not known because no longer Lie derivatives were looked at, though nobody asked for shorter ones.
     pub cut_off: bool,
-    /// What is not seen as fields, and its observable part as functions: where the rank is short of the dimension and no
+    /// The unobservable directions as fields, and the observable part as functions: where the rank is short of the dimension and no
     /// condition is one on states.
     pub motions: Option<UnobservableDirections>,
     /// The rank of the full codistribution at the sampled states.
     pub full: SweepReport,
-    /// How well each state is seen where what is measured has noise; none where the sweep was interrupted.
+    /// How well each state is observable where what is measured has noise; none where the sweep was interrupted.
     pub deviations: Option<StandardDeviations>,
     /// The rank of the file's own choice of rows at the same states, where it defines a matrix `rows`.
     pub rows: Option<SweepReport>,
@@ -66,7 +66,7 @@ pub struct BranchAnswer {
 pub struct GenericOnBranch {
     /// The conditions, solved, in words.
     pub conditions: Vec<String>,
-    /// What is seen at almost all of its states, and of each unknown whether it is.
+    /// What is observable at almost all of its states, and whether each unknown is.
     pub generic: GenericAnswer,
     /// The unknowns: their names and what they are.
     pub unknowns: Vec<(String, UnknownKind)>,
@@ -102,21 +102,21 @@ impl GenericOnBranch {
 
 /// What was found.
 pub struct RankAnswer {
-    /// The file and the title of the system.
+    /// The file of the system.
     pub file: String,
     /// The title of the system.
     pub title: String,
     /// How many outputs it has.
     pub outputs: usize,
-    /// The fields that the words take.
+    /// The fields along which Lie derivatives are taken.
     pub fields: Vec<FieldRole>,
     /// The seed of the drawn states.
     pub seed: u64,
-    /// The number of states of the system: the rank of one that is seen.
+    /// The number of unknowns of the system: the rank where all are observable.
     pub dimension: usize,
     /// The coordinates that are known and have no column, by name.
     pub known: Vec<String>,
-    /// What is assumed of signals that are not known.
+    /// What is assumed of unknown signals.
     pub assumed: Vec<String>,
     /// An answer for each branch of the conditions, and for each part of one by the signs on which roots depend; one where there are
     /// none.
@@ -133,7 +133,7 @@ impl RankAnswer {
 }
 
 impl RankAnswer {
-    /// Tells no times.
+    /// Removes all times.
     pub fn forget_times(&mut self) {
         for branch in &mut self.branches {
             branch.full.seconds = f64::NAN;
@@ -141,7 +141,7 @@ impl RankAnswer {
         }
     }
 
-    /// Whether a search ended before its end: longer words might say more, and no series did.
+    /// Whether a search was cut off: longer Lie derivatives might raise the rank, and no series decided it.
     pub fn cut_off(&self) -> bool {
         self.branches.iter().any(|branch| branch.cut_off)
     }
@@ -159,7 +159,7 @@ pub enum RankError {
     /// A condition that cannot be solved.
     #[error(transparent)]
     Unsolved(#[from] Unsolved),
-    /// A symbol that is both held and solved for.
+    /// A symbol that is both fixed and solved for.
     #[error("'{0}' is held fixed and solved for in a condition; choose one")]
     HeldAndSolved(String),
     /// No field moves the states, or every state is a pole.
@@ -202,7 +202,7 @@ pub(crate) fn held_parameters<'a>(
 }
 
 /// What outputs and fields divide by, and take roots and logarithms of: a state has to have values for it too, also where no entry
-/// of the codistribution mentions it, as the mass in `v' = -x/m` where `x` and `v` are seen.
+/// of the codistribution mentions it, as the mass in `v' = -x/m` where `x` and `v` are measured.
 pub(super) fn guarded(system: &System) -> Vec<NodeId> {
     let guards = system.smooth_guards(&system.moving_fields());
     let open = guards.iter().filter(|guard| guard.is_obvious(&system.graph) != Some(true));

@@ -114,12 +114,12 @@ impl Scales {
     }
 
     /// The standard deviation of each state over its prior one, where the differentials have these values, known up to `errors`:
-    /// infinite where a direction takes part in it that is not observable, or that cannot be told from one.
+    /// infinite where a direction takes part in it that is unobservable, or cannot be distinguished from such.
     pub fn deviations(&self, matrix: &DMatrix<f64>, errors: Option<&DMatrix<f64>>) -> Vec<f64> {
         let found = Decomposition::new(self.scaled(matrix), errors.map(|errors| self.scaled(errors)));
         let Some(found) = found else { return vec![f64::INFINITY; self.priors.len()] };
         let told = found.values.iter().filter(|value| found.is_told(**value)).count();
-        // as many directions as anywhere: the others are not observable at all, and what takes no part in them is told. Where there are
+        // as many directions as anywhere: the others are unobservable everywhere, and what takes no part in them is determined. Where there are
         // fewer, a small value may be hidden, by which any small part of what is connected is divided
         let hides = errors.is_some() && told < self.rank;
         found.deviations(hides)
@@ -214,7 +214,7 @@ fn variances(on: &Enclosures, rows: &[Vec<&Enclosure>]) -> Result<Option<Vec<f64
         }
     }
     let diagonal: Vec<&Enclosure> = (0..size).map(|i| &work[i][size + i]).collect();
-    // a variance that leaves the doubles is none of infinite size
+    // a variance beyond the range of doubles is not an infinite one
     let is_fixed = diagonal.iter().all(|own| own.significance() > FIXED && own.midpoint().is_normal());
     Ok(is_fixed.then(|| diagonal.iter().map(|own| own.midpoint()).collect()))
 }
@@ -234,7 +234,7 @@ struct Decomposition {
 }
 
 impl Decomposition {
-    /// Nothing where it leaves the range of doubles, where nothing can be told and a decomposition would panic.
+    /// Nothing where it leaves the range of doubles, where nothing can be decided and a decomposition would panic.
     fn new(mut scaled: DMatrix<f64>, errors: Option<DMatrix<f64>>) -> Option<Decomposition> {
         if !scaled.iter().all(|value| value.is_finite()) {
             return None;
@@ -268,7 +268,7 @@ impl Decomposition {
         Some(Decomposition { lengths, values, directions: found.v_t?, doubt, turning, parts })
     }
 
-    /// Whether a singular value can be told from zero.
+    /// Whether a singular value can be distinguished from zero.
     fn is_told(&self, value: f64) -> bool {
         value > self.doubt
     }
@@ -342,7 +342,7 @@ fn spread_of_state(system: &System, symbol: Symbol, states: &[State]) -> f64 {
     spread(&drawn).unwrap_or(1.0)
 }
 
-/// The spread of a word over the states; to first order where its value is the same at all of them, or not known.
+/// The spread of a Lie derivative over the states; to first order where its value is the same at all of them, or not known.
 fn unit(word: usize, measured: &[Option<Vec<f64>>], found: &[DMatrix<f64>], spreads: &[f64]) -> f64 {
     let values: Option<Vec<f64>> =
         measured.iter().map(|values| values.as_ref().map(|values| values[word])).collect();
@@ -387,7 +387,7 @@ mod tests {
         }
     }
 
-    /// `a = x + y` sees neither, `b = z` sees z.
+    /// `a = x + y` determines neither, `b = z` determines z.
     #[test]
     fn what_takes_part_in_an_unseen_direction_is_infinite_and_nothing_else() {
         let matrix = DMatrix::from_row_slice(2, 3, &[1.0, 1.0, 0.0, 0.0, 0.0, 4.0]);
@@ -409,7 +409,7 @@ mod tests {
         let matrix = DMatrix::from_row_slice(3, 2, &[1.0, 2.0, 3.0, -1.0, 0.5, 4.0]);
         let (units, spreads) = ([0.1, 0.2, 0.3], [2.0, 5.0]);
         let expected = deviations_of(&matrix, &units, &spreads);
-        // rows in other units of the words, columns in other units of the states
+        // rows in other units of the Lie derivatives, columns in other units of the states
         let (words, states) = ([1e6, 1e-9, 3.0], [1e3, 1e-5]);
         let other = DMatrix::from_fn(3, 2, |row, column| matrix[(row, column)] * words[row] / states[column]);
         let units: Vec<f64> = units.iter().zip(words).map(|(unit, scale)| unit * scale).collect();
@@ -419,7 +419,7 @@ mod tests {
         }
     }
 
-    /// Entries that are known up to an error tell nothing of what the error may have made.
+    /// Entries that are known up to an error say nothing of what the error may have made.
     #[test]
     fn what_errors_may_have_made_is_infinite() {
         let matrix = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, 1.0 + 1e-6]);
@@ -432,7 +432,7 @@ mod tests {
         assert!((found[0] - 1.0).abs() < 1e-12 && found[1].is_infinite(), "{found:?}");
     }
 
-    /// By hand: rows `x + e y`, `e^2 y`, `x`, and a `z` of its own. Of `y` a value is hidden that any part of `x` is divided by; `z` is told.
+    /// By hand: rows `x + e y`, `e^2 y`, `x`, and a `z` of its own. Of `y` a value is hidden that any part of `x` is divided by; `z` is determined.
     #[test]
     fn next_to_a_singular_set_only_what_is_not_connected_is_told() {
         let scales = Scales { priors: vec![1.0; 3], noise: vec![1.0; 3], rank: 3 };
@@ -452,7 +452,7 @@ mod tests {
         assert!((hidden[2] - 0.5).abs() < 1e-12, "{hidden:?}");
     }
 
-    /// The same rows in enclosures, where they have their digits, and with a `w` that nothing sees.
+    /// The same rows in enclosures, where they have their digits, and with an unobservable `w`.
     #[test]
     fn enclosures_tell_next_to_a_singular_set() {
         let scales = Scales { priors: vec![1.0; 4], noise: vec![1.0; 3], rank: 3 };

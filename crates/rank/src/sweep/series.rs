@@ -1,4 +1,4 @@
-//! The rank at many states by power series: where the words of Lie derivatives that it takes are too long to be written down.
+//! The rank at many states by power series: where the Lie derivatives that it takes are too long to be written down.
 
 use super::counts::SweepCounts;
 use super::states::{Stretch, SweepOptions, SweepReport, Told};
@@ -6,7 +6,7 @@ use super::table::{StateRow, TableOf};
 use crate::observability::{Defined, Locus, LocusError, Probe};
 use palmistry_budget::Share;
 use palmistry_lang::System;
-use palmistry_math::number::{PrimeField, Rung};
+use palmistry_math::number::{NumberType, PrimeField};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -79,7 +79,7 @@ impl PreparedSeries {
                     Ok(rank) => {
                         counts.samples += 1;
                         *counts.ranks.entry(rank).or_insert(0) += 1;
-                        *counts.rungs.entry(Rung::Residues).or_insert(0) += 1;
+                        *counts.number_types.entry(NumberType::Residues).or_insert(0) += 1;
                         counts.certified += u64::from(rank == most);
                     }
                     Err(pole) => *counts.poles.entry(pole).or_insert(0) += 1,
@@ -102,8 +102,8 @@ impl PreparedSeries {
             computed_histogram: BTreeMap::new(),
             certified: counts.certified,
             disagreements: 0,
-            rungs: counts.rungs,
-            first: Rung::Residues,
+            number_types: counts.number_types,
+            first: NumberType::Residues,
             remaining: (0, 0),
             poles: counts.poles,
             worst: None,

@@ -20,9 +20,9 @@ pub struct GlobalAnswer {
     pub file: String,
     /// Its title.
     pub title: String,
-    /// What the file gives at the beginning, in words.
+    /// The initial conditions that the file gives, in words.
     pub conditions: Vec<String>,
-    /// Parameters that have the values of the file.
+    /// Parameters fixed at their values in the file.
     pub held: Vec<(String, RBig)>,
     /// The names of known coordinates.
     pub known: Vec<String>,
@@ -30,9 +30,9 @@ pub struct GlobalAnswer {
     pub solutions: SolutionsAnswer,
     /// Generators of all identifiable functions, where they were asked for.
     pub functions: Option<IdentifiableFunctions>,
-    /// Whether somebody did not wait for the end.
+    /// Whether it was interrupted before the end.
     pub interrupted: bool,
-    /// How long it took.
+    /// How long it took, in s.
     pub seconds: f64,
 }
 
@@ -80,7 +80,7 @@ pub enum SolutionsWanted {
 /// ```
 ///
 /// # Errors
-/// No unknowns or no outputs, no drift or input, values at the beginning that cannot be solved for.
+/// No unknowns or no outputs, no drift or input, initial conditions that cannot be solved for.
 pub fn answer_solutions(
     system: &mut System,
     wanted: SolutionsWanted,
@@ -90,7 +90,7 @@ pub fn answer_solutions(
     answer_solutions_telling(system, wanted, work, interrupt, &mut |_| ())
 }
 
-/// The same, and tells what is known before the end as soon as it is: as an answer that was interrupted.
+/// The same, and hands on what is known before the end as soon as it is: as an answer that was interrupted.
 ///
 /// # Errors
 /// As for [`answer_solutions`].
@@ -113,7 +113,7 @@ pub fn answer_solutions_telling(
         return Err(RankError::Condition(several.to_owned()));
     };
     let conditions = given(system, branch);
-    // local answers are those of the states that the outputs which are zero leave
+    // local answers are those at states where the outputs that are zero vanish
     let branch = &branch.clone().tied_by_outputs(system)?;
     let asked =
         RankQuestion { samples: 0, wanted: Certainty::Computed, interrupt, ..RankQuestion::default() };

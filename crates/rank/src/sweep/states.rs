@@ -3,11 +3,11 @@
 use super::certainty::Certainty;
 use super::digits::{Digits, NoDigits};
 use super::unobservable::UnobservableDirection;
-use crate::observability::{GenericAnswer, Observability, Spectrum, State, StateInWords};
+use crate::observability::{GenericAnswer, Observability, Spectrum, State, WrittenState};
 use dashu::rational::RBig;
 use palmistry_lang::System;
 use palmistry_math::expression::Guard;
-use palmistry_math::number::Rung;
+use palmistry_math::number::NumberType;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
@@ -23,7 +23,7 @@ pub struct SweepOptions<'a> {
     pub most: Option<usize>,
     /// What the rows need to exist, beside what outputs and fields need.
     pub guards: &'a [Guard],
-    /// What every rank has to be, at the least.
+    /// How certain every rank has to be, at the least.
     pub wanted: Certainty,
     /// To how many digits the singular values of the worst conditioned state are wanted, if doubles will not do.
     pub digits: Option<usize>,
@@ -59,7 +59,7 @@ pub struct RecordedState {
     pub state: State,
     /// Its rank.
     pub rank: usize,
-    /// A basis of the directions that no row sees, exactly.
+    /// A basis of the unobservable directions, exactly.
     pub unobservable: Vec<Vec<RBig>>,
 }
 
@@ -76,19 +76,19 @@ pub struct SweepReport {
     pub certified: u64,
     /// At how many states the singular values say something else than what decided.
     pub disagreements: u64,
-    /// How many states each rung of the ladder decided.
-    pub rungs: BTreeMap<Rung, u64>,
-    /// The rung with which every state began.
-    pub first: Rung,
+    /// How many states each number type decided.
+    pub number_types: BTreeMap<NumberType, u64>,
+    /// The number type with which every state began.
+    pub first: NumberType,
     /// Rows and columns of the matrix that remains without unit rows; the singular values are its.
     pub remaining: (usize, usize),
     /// Poles that were met and left out, by the divisor that was zero.
     pub poles: BTreeMap<String, u64>,
     /// The state of full rank with the largest ratio of singular values.
-    pub worst: Option<(StateInWords, Spectrum)>,
+    pub worst: Option<(WrittenState, Spectrum)>,
     /// Its singular values to as many digits as were wanted, if any were.
     pub digits: Option<Result<Digits, NoDigits>>,
-    /// What is not seen where the rank is short.
+    /// The unobservable directions where the rank is short.
     pub unobservable: Vec<UnobservableDirection>,
     /// The smallest gap on which a computed rank rests.
     pub smallest_gap: f64,
@@ -97,14 +97,18 @@ pub struct SweepReport {
     /// As many of the states as were to be recorded, spread over the sweep, those that are poles or not certified left
     /// out; the worst conditioned state is the first.
     pub recorded: Vec<RecordedState>,
-    /// How long it took, in s; NaN where it is not told, as of a sweep that was merged of parts.
+    /// How long it took, in s; NaN where it is not recorded, as of a sweep that was merged of parts.
     pub seconds: f64,
 }
 
 impl SweepReport {
-    /// How many states were left by the first rung of the ladder to a later one.
+    /// How many states were escalated from the first number type to a later one.
     pub fn climbed(&self) -> u64 {
-        self.rungs.iter().filter(|(rung, _)| **rung != self.first).map(|(_, count)| count).sum()
+        self.number_types
+            .iter()
+            .filter(|(number_type, _)| **number_type != self.first)
+            .map(|(_, count)| count)
+            .sum()
     }
 }
 
@@ -118,7 +122,7 @@ pub(super) struct Stretch<'a> {
     pub progress: &'a (dyn Fn(u64) + Sync),
 }
 
-/// What is told of a sweep beside what it has counted.
+/// What is reported of a sweep beside what it has counted.
 #[derive(Clone, Copy)]
 pub(super) struct Told<'a> {
     /// How many states the whole sweep has.
@@ -132,7 +136,7 @@ pub(super) struct Told<'a> {
 
 impl GenericAnswer {
     /// Takes the rank that was certified at all sampled states for a lower bound, on the components of the domain on which they lie,
-    /// where that decides the rank; and what is not seen at one of them for not seen.
+    /// where that decides the rank; and what is unobservable at one of them for unobservable.
     pub(super) fn seen_at_states(&mut self, system: &System, report: &SweepReport) {
         let mut ranks = report.rank_histogram.keys();
         let (rank, others) = (ranks.next(), ranks.next());
@@ -145,7 +149,7 @@ impl GenericAnswer {
         self.open = Some(
             "by minors at the sampled states, for the components of the domain on which these lie".to_owned(),
         );
-        // a part that is told is no zero, also where it is known to many digits only
+        // a part that is reported is not zero, also where it is known to many digits only
         let takes_part = |name: &str| {
             report.unobservable.iter().any(|direction| direction.states.iter().any(|state| state == name))
         };

@@ -40,7 +40,7 @@ impl StateRow {
 
 /// Who takes the rows of a table, block after block in the order of the indices.
 pub struct StateTable<'a> {
-    /// The coordinates that are told of each state.
+    /// The coordinates that are reported of each state.
     pub coordinates: Vec<Symbol>,
     /// Takes some rows of the branch of the conditions of a number, counted from zero.
     pub take: &'a mut dyn FnMut(usize, &[StateRow]),

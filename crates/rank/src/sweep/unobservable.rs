@@ -1,13 +1,13 @@
-//! Directions in the state space that no row sees, at a state at which that is so.
+//! Unobservable directions in the state space, each at a state.
 
-use crate::observability::StateInWords;
+use crate::observability::WrittenState;
 use dashu::base::{Abs, Gcd};
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
 use palmistry_math::number::rational_to_f64;
 use std::collections::BTreeMap;
 
-/// Directions of one kind that are not seen, with one example.
+/// Unobservable directions of one kind, with one example.
 #[derive(Clone, Debug)]
 pub struct UnobservableDirection {
     /// The states that take part, by name.
@@ -18,8 +18,8 @@ pub struct UnobservableDirection {
     pub example: String,
     /// The index of the draw that it belongs to.
     pub index: u64,
-    /// The state at which it is not seen, all its coordinates.
-    pub at: StateInWords,
+    /// The state at which it is unobservable, all its coordinates.
+    pub at: WrittenState,
     /// That direction as a vector, a part for each of `states`: in small integers where its parts are in such a
     /// proportion, else with one as its largest part. The first part is positive.
     pub vector: Vec<RBig>,
@@ -39,7 +39,7 @@ pub(super) struct UnseenKind {
     pub example: Option<UnseenExample>,
 }
 
-/// A direction at the state at which it is not seen.
+/// A direction at the state at which it is unobservable.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct UnseenExample {
     /// The index of the draw.
@@ -58,7 +58,7 @@ pub(super) struct UnseenExample {
 pub(super) struct UnseenDirections(pub BTreeMap<Vec<String>, UnseenKind>);
 
 impl UnseenDirections {
-    /// Counts a direction that is not seen at a state, the draw of an index.
+    /// Counts a direction that is unobservable at a state, the draw of an index.
     pub fn add(&mut self, unknowns: &[String], direction: &[RBig], index: u64) {
         let takes_part: Vec<bool> = direction.iter().map(|part| !part.is_zero()).collect();
         self.count(unknowns, &takes_part);
@@ -99,7 +99,7 @@ impl UnseenDirections {
     /// Those of `at`.
     pub fn into_list<E>(
         self,
-        at: impl Fn(u64) -> Result<StateInWords, E>,
+        at: impl Fn(u64) -> Result<WrittenState, E>,
     ) -> Result<Vec<UnobservableDirection>, E> {
         let with_example = |(states, kind): (Vec<String>, UnseenKind)| {
             let UnseenExample { index, text, vector, exact } = kind.example?;

@@ -89,7 +89,7 @@ pub fn region_json(answer: &RegionAnswer) -> Value {
     })
 }
 
-/// A fraction in percent, rounded down, with as many digits as it takes to tell it from all.
+/// A fraction in percent, rounded down, with as many digits as it takes to distinguish it from all.
 pub fn percent(fraction: f64) -> String {
     if fraction >= 1.0 {
         return "100%".to_owned();

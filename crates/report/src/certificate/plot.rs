@@ -69,7 +69,7 @@ fn meaning(standing: BoxStanding) -> &'static str {
 const STANDINGS: [BoxStanding; 4] =
     [BoxStanding::Proved, BoxStanding::MinorVanishes, BoxStanding::Pole, BoxStanding::Undecided];
 
-/// More boxes than these are not told apart on a page.
+/// More boxes than these are drawn as cells on a page.
 const MOST_PATCHES: usize = 200;
 /// Cells across and up.
 const GRID: [usize; 2] = [84, 60];
@@ -126,7 +126,7 @@ pub fn region_map(map: &RegionMap, title: &str, units: [Option<&str>; 2]) -> Str
     drawn(map, title, units, usize::MAX)
 }
 
-/// The same for a page: many boxes are not told apart, their plane is drawn in cells, without borders.
+/// The same for a page: where boxes are too many their plane is drawn in cells, without borders.
 pub(crate) fn region_map_in_short(map: &RegionMap, title: &str, units: [Option<&str>; 2]) -> String {
     drawn(map, title, units, MOST_PATCHES)
 }
@@ -172,7 +172,7 @@ mod tests {
     use super::*;
     use palmistry_lang::CoordinateRange;
 
-    /// A cell is pale only where nothing else reaches into it: a small box on the border of two cells is seen in both.
+    /// A cell is pale only where nothing else reaches into it: a small box on the border of two cells shows in both.
     #[test]
     fn a_cell_shows_what_reaches_into_it() {
         let patch = |x, y, standing| Patch { x, y, standing };

@@ -119,7 +119,7 @@ fn entry(outcome: &Outcome, fault: Flaw, out: &mut String) {
 /// A statement as code hosts typeset it, and as it stands in its file, where it is one.
 fn formula(text: &str, outcome: &Outcome) -> String {
     let latex = statement_latex_in(text, &outcome.looks).filter(|latex| latex.len() <= LONGEST_FORMULA);
-    // there they know no command that makes an operator of a word
+    // there they do not know the command for the name of an operator
     let shown = latex.map(|latex| latex.replace("\\operatorname{", "\\mathrm{"));
     shown.map_or(String::new(), |latex| format!("```math\n{latex}\n```\n\n")) + &code_block(text)
 }
@@ -187,7 +187,7 @@ fn table(all: &[NumberedEquation<'_>], out: &mut String) {
     }
 }
 
-/// An entry beside its equation: with its word where that is another one, with what it restates or follows.
+/// An entry beside its equation: with its verdict where that differs from the equation's, with what it restates or follows from.
 fn in_the_table(outcome: &Outcome, word: &str) -> String {
     let mut notes = Vec::new();
     if outcome.word() != word {

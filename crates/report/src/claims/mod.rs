@@ -1,4 +1,4 @@
-//! Claims: their outcomes as lines, JSON and JUnit, what their words are counted as, and the errata.
+//! Claims: their outcomes as lines, JSON and JUnit, the counts of their verdicts, and the errata.
 
 pub(super) mod errata;
 mod junit;

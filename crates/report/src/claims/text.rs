@@ -31,7 +31,7 @@ pub struct ClaimsForm {
 /// What stands below a report.
 #[derive(Clone, Copy, Debug)]
 pub struct ClaimsSummary {
-    /// How many claims there are, decided or not; none where the files were not all read when the run was cut off.
+    /// How many claims there are, decided or not; none where not all files were read before the run was cut off.
     pub claims: Option<usize>,
     /// How long it took in all.
     pub seconds: f64,
@@ -144,7 +144,7 @@ fn unexpected(outcome: &Outcome, layout: &Layout) -> String {
     lines.join("\n")
 }
 
-/// What the file expects, in words.
+/// What the file expects, as text.
 fn expectation(outcome: &Outcome) -> String {
     match (outcome.fault, &outcome.printed) {
         (Some(fault), printed) => {

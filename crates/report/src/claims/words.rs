@@ -1,4 +1,4 @@
-//! The words of outcomes: what each one says, how many entries have it, and which errors are errors of their own.
+//! The verdicts of outcomes: what each one means, how many entries have it, and which errors are independent.
 
 use palmistry_io::foreign::markdown;
 use palmistry_lang::Flaw;
@@ -6,7 +6,7 @@ use palmistry_prove::claim::Outcome;
 use palmistry_workbench::paper::Numbering;
 use std::fmt::Write as _;
 
-/// The rule by which a damage is given to the author, to the scanner or to neither; shown wherever words are explained.
+/// The rule by which a damage is given to the author, to the scanner or to neither; shown wherever verdicts are explained.
 pub(crate) const RULE_OF_DAMAGE: &str = "One rule for damage. What is wrong in the text at hand may be the author's, the \
     typesetter's or the scanner's. *Scanning fault* is said only where characters stand that no typesetter sets (glyphs \
     that are no symbol there, a line set twice or broken off). *Print or scan* is said where a sign, dot, prime, tilde, \
@@ -14,7 +14,7 @@ pub(crate) const RULE_OF_DAMAGE: &str = "One rule for damage. What is wrong in t
     right: only the printed page could show whose. *Erratum* is said where the same \
     mistake is carried on, or is one of substance, so that no scanner made it. What is damaged is never *proved*.";
 
-/// What a word says.
+/// What a verdict means.
 pub(crate) fn meaning(word: &str) -> &'static str {
     match word {
         "proved" => {
@@ -47,20 +47,20 @@ pub(crate) fn meaning(word: &str) -> &'static str {
     }
 }
 
-/// How many outcomes have each word, in the order of [`Outcome::WORDS`]; words that none has are left out.
+/// How many outcomes have each verdict, in the order of [`Outcome::WORDS`]; verdicts that none has are left out.
 pub(crate) fn counts<'o>(outcomes: impl IntoIterator<Item = &'o Outcome>) -> Vec<(&'static str, usize)> {
     let words: Vec<&str> = outcomes.into_iter().map(Outcome::word).collect();
     let count = |word: &str| words.iter().filter(|known| **known == word).count();
     Outcome::WORDS.into_iter().map(|word| (word, count(word))).filter(|(_, count)| *count > 0).collect()
 }
 
-/// The same in words: `12 proved, 2 errata`.
+/// The same as text: `12 proved, 2 errata`.
 pub fn counts_text<'o>(outcomes: impl IntoIterator<Item = &'o Outcome>) -> String {
     let each: Vec<String> = counts(outcomes).into_iter().map(|(word, count)| numbered(count, word)).collect();
     each.join(", ")
 }
 
-/// A number of outcomes with a word, in the plural where it is one: `1 erratum`, `2 errata`, `2 proved`.
+/// A number of outcomes with a verdict, in the plural where it has one: `1 erratum`, `2 errata`, `2 proved`.
 pub(crate) fn numbered(count: usize, word: &str) -> String {
     match (count, word) {
         (1, _) => format!("1 {word}"),
@@ -123,7 +123,7 @@ impl Errors<'_> {
     }
 }
 
-/// A table of all words that occur: what they say, and how many entries and numbered equations have them.
+/// A table of all verdicts that occur: what they mean, and how many entries and numbered equations have them.
 pub(crate) fn words_markdown(numbering: &Numbering, outcomes: &[&Outcome], out: &mut String) {
     let rows = numbering.equations(outcomes.iter().copied());
     let _ = writeln!(out, "| word | entries | equations | what it says |\n|---|---:|---:|---|");

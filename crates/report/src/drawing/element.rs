@@ -99,7 +99,7 @@ impl Element<'_> {
                 let (x, y, r) = (number("cx"), number("cy"), number("r"));
                 [x - r, y - r, x + r, y + r]
             }
-            // more than the words cover, wherever they begin and however they are turned
+            // more than the text covers, wherever it begins and however it is turned
             "text" => {
                 let size = self.attribute("font-size").parse::<f64>().unwrap_or(10.0) * 1.24;
                 let reach = (size * (0.7 * self.words.chars().count() as f64 + 1.0)).ceil() as i32;

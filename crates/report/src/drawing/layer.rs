@@ -22,11 +22,11 @@ impl Layer {
     }
 }
 
-/// Layers that are seen as the shapes one after the other are.
+/// Layers that look as the shapes one after the other do.
 pub(super) fn layers(shapes: impl Iterator<Item = Shape>) -> Vec<Layer> {
     let mut found: Vec<Layer> = Vec::new();
     for Shape { look, part, corners } in shapes {
-        // thin lines in the colour of the page are a mesh that is not to be seen
+        // thin lines in the colour of the page are a mesh that is not to be visible
         if look.kind == Kind::Stroke("1".to_owned()) && look.colour == "#FFFFFF" {
             continue;
         }

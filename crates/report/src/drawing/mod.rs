@@ -1,5 +1,5 @@
 //! A picture as SVG for pages in light and dark: what plotters draws, with shapes of one look written as one path, colours that
-//! follow the page, and numbers to be read under the pointer.
+//! follow the page, and numbers under the pointer.
 
 mod element;
 mod layer;
@@ -18,11 +18,11 @@ pub(super) const STANDALONE: &str =
 /// What is drawn on.
 pub(super) type Drawing<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// The colour of words and axes; on a page the ink of the page.
+/// The colour of texts and axes; on a page the ink of the page.
 pub(super) const INK: RGBColor = RGBColor(40, 44, 52);
 /// Lines behind a chart; on a page the colour of its rules.
 pub(super) const MESH: RGBColor = RGBColor(225, 228, 232);
-/// Words that are less important; on a page those of the page.
+/// Texts that are less important; on a page those of the page.
 pub(super) const SOFT: RGBColor = RGBColor(95, 100, 110);
 
 /// A part of a picture over which the pointer shows a text: left, top, right, bottom, in pixels.
@@ -51,7 +51,7 @@ pub(super) struct Extras {
 /// A picture that is to be drawn.
 pub(super) struct Canvas<'a> {
     pub size: (u32, u32),
-    /// What it shows, for those who do not see it.
+    /// What it shows, for those who cannot see it.
     pub title: &'a str,
     /// What stands behind the fields of a colour.
     pub by_colour: &'a [(RGBColor, String)],
@@ -223,7 +223,7 @@ pub(super) fn escaped(text: &str) -> String {
 mod tests {
     use super::*;
 
-    /// By hand: two squares of one colour are one path, a line between them another, and the words stand where they were put.
+    /// By hand: two squares of one colour are one path, a line between them another, and the text stands where it was put.
     #[test]
     fn shapes_of_one_look_are_one_path() {
         let red = RGBColor(200, 40, 60);

@@ -1,4 +1,4 @@
-//! What several experiments tell together: text, JSON, tables, and a page with what was measured beside what is expected.
+//! Fits of several experiments: text, JSON, tables, and a page with what was measured beside what is expected.
 
 mod page;
 mod plot;
@@ -19,7 +19,7 @@ pub struct JointObserved<'a> {
     pub experiments: &'a JointExperiments,
     /// What came of it.
     pub answer: &'a JointAnswer,
-    /// Whether somebody ended it early.
+    /// Whether it was interrupted.
     pub interrupted: bool,
 }
 
@@ -44,10 +44,10 @@ const POOR: f64 = 0.5;
 enum Standing {
     Determined,
     Poorly,
-    /// The interval of 95 % goes beyond the bounds, or nothing tells it.
+    /// The interval of 95 % goes beyond the bounds, or no measurement determines it.
     Undetermined,
     AtBound,
-    /// The search came to no end: there is something better, and what is known there says nothing.
+    /// The search has not converged: there is something better, and the information there has no meaning.
     NotEnded,
 }
 
@@ -99,7 +99,7 @@ impl Entry<'_> {
         self.profile.map(|own| own.interval.map(|end| end.map(|end| self.parameter.scale.value(end))))
     }
 
-    /// The same in words: an end that is not met before the bound is open, and of a profile that was cut off nobody knows.
+    /// The same as text: an end that is not met before the bound is open, and of a profile that was cut off it is unknown.
     fn interval_words(&self) -> Option<[String; 2]> {
         let (ends, cut_off) = (self.interval()?, self.profile?.cut_off);
         let word = |side: usize| match ends[side] {
@@ -159,7 +159,7 @@ fn with_deviation(entry: &Entry<'_>) -> String {
     }
 }
 
-/// A direction in words: the parameters that take part, on their scales.
+/// A direction as text: the parameters that take part, on their scales.
 fn direction_words(observed: &JointObserved<'_>, parts: &[(usize, f64)]) -> String {
     let parameters = &observed.experiments.problem().parameters;
     let one = |(place, part): &(usize, f64)| {
@@ -175,7 +175,7 @@ fn direction_words(observed: &JointObserved<'_>, parts: &[(usize, f64)]) -> Stri
     format!("{}{rest}", all.join(" "))
 }
 
-/// Directions that are told by no more than half of a decade, or a unit of a linear scale, the worst first.
+/// Directions known no better than by half of a decade, or a unit of a linear scale, the worst first.
 fn weak<'a>(observed: &JointObserved<'a>) -> Vec<&'a palmistry_fit::WeakDirection> {
     let has_ended = matches!(&observed.answer.fit, Some(Ok(fit)) if fit.best().end == StartEnd::Converged);
     let Some(information) = observed.answer.information.as_ref().filter(|_| has_ended) else {

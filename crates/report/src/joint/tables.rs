@@ -1,4 +1,4 @@
-//! SimulatedExperiments values and parameters as the tables of a PEtab problem.
+//! Simulated values and parameters as the tables of a PEtab problem.
 
 use super::JointObserved;
 use palmistry_fit::SimulatedExperiments;

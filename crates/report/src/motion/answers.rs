@@ -20,7 +20,7 @@ static NOT_STUDIED: Studied = Studied { noise: Vec::new(), basins: Vec::new(), c
 /// An experiment with all that was found: what the page and the JSON are made from.
 #[derive(Clone, Copy, Debug)]
 pub struct Observed<'a> {
-    /// The scene with its readings.
+    /// The scene with its measurements.
     pub experiment: &'a Experiment,
     /// What the observers made of it.
     pub answers: &'a [Answer],
@@ -43,12 +43,12 @@ pub(super) fn end_name(end: &UpdateEnd) -> String {
         UpdateEnd::DoesNotFit => "converged, but does not fit".to_owned(),
         UpdateEnd::StepsSpent => "all steps spent".to_owned(),
         UpdateEnd::Stuck => "no step lowers the error".to_owned(),
-        UpdateEnd::Blind { .. } => "not observable".to_owned(),
+        UpdateEnd::Unobservable { .. } => "not observable".to_owned(),
         UpdateEnd::Lost(lost) => format!("lost: {lost}"),
     }
 }
 
-/// The unit of the readings' errors, with a space before it: metres of contacts, and of other systems that of all outputs where they
+/// The unit of the measurements' errors, with a space before it: metres of contacts, and of other systems that of all outputs where they
 /// have one.
 pub(super) fn noise_unit(observed: &Observed<'_>) -> String {
     let experiment = observed.experiment;
@@ -83,7 +83,7 @@ pub(super) fn origin_in_words(experiment: &Experiment) -> String {
 
 /// In which columns of a file something was not measured, as lines.
 pub(super) fn sparse_lines(experiment: &Experiment) -> Vec<String> {
-    // a known delay shortens the signals, and not what was read
+    // a known delay shortens the signals, and not the record
     let rows = experiment.record.len() + experiment.outside.iter().sum::<usize>();
     let column = |own: &SparseColumn| {
         let what = match own.empty {
@@ -112,7 +112,7 @@ fn interpolation_in_words(interpolation: Interpolation) -> &'static str {
     }
 }
 
-/// States with what was recovered, what is true, the error and the bound, by name.
+/// States with what was recovered, what is true, the error and the Cramér-Rao bound, by name.
 pub(super) fn states(observed: &Observed<'_>, time: f64, recovered: &[f64], bounds: Option<&[f64]>) -> Value {
     let truth = observed.experiment.truth_at(time);
     let mut states = Map::new();
@@ -144,7 +144,7 @@ pub(super) fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
         "residual": finite(update.rms_residual),
         "states": states(observed, update.from, &update.estimate, Some(&update.deviations)),
     });
-    if let UpdateEnd::Blind { weakest } = &update.end {
+    if let UpdateEnd::Unobservable { weakest } = &update.end {
         found["unobservable"] = json!(weakest);
         found["held"] = json!(true);
     }
@@ -214,10 +214,10 @@ fn sensor_json(experiment: &Experiment) -> Value {
     found
 }
 
-/// An experiment as JSON: true and recovered states, errors, the bound of Cramér and Rao, iterations and time.
+/// An experiment as JSON: true and recovered states, errors, the Cramér-Rao bounds, iterations and time.
 ///
-/// An `error` is `|recovered - true|` in the unit of its state, as a `bound` is, a standard deviation for the readings' own errors or, where they have
-/// none, for errors of 1e-9 (contacts: a nanometre); what is not seen has none. A `relative_error` is absolute where the truth is less than a millionth.
+/// An `error` is `|recovered - true|` in the unit of its state, as a `bound` is, a standard deviation for the measurements' own errors or, where they have
+/// none, for errors of 1e-9 (contacts: a nanometre); an unobservable state has none. A `relative_error` is absolute where the truth is less than a millionth.
 pub fn observe_json(observed: &Observed<'_>) -> Value {
     let experiment = observed.experiment;
     let times = experiment.signals.times();
@@ -339,7 +339,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         let _ = writeln!(text, "\n{}{time}", answer.method.name());
         for update in &answer.track.updates {
             let time = if is_timed { format!(", {:.1} ms", 1e3 * update.seconds) } else { String::new() };
-            // that it does not fit has its own words, with the figures
+            // that it does not fit has a sentence of its own, with the figures
             let standing = match &update.end {
                 UpdateEnd::DoesNotFit => end_name(&UpdateEnd::Converged),
                 end => end_name(end),
@@ -397,7 +397,7 @@ fn state_unit(observed: &Observed<'_>, name: &str) -> Option<String> {
     if experiment.is_about_palms() { None } else { unit_of(&experiment.system, name) }
 }
 
-/// A state that is sought, with its unit.
+/// An estimated state, with its unit.
 pub(super) fn state_name(observed: &Observed<'_>, name: &str) -> String {
     state_unit(observed, name).map_or_else(|| name.to_owned(), |unit| format!("{name}, {unit}"))
 }
@@ -428,7 +428,8 @@ pub(super) fn state_lines(
     }
 }
 
-/// What is known beside recovered states: their standard deviations, which may be none, those that are held at a bound, and what is said before a deviation that is not an estimate's.
+/// What is known beside recovered states: their standard deviations, which may be none, those that lie at a bound, and what is said before a deviation that is
+/// not an estimate's.
 #[derive(Clone, Copy)]
 pub(super) struct Beside<'a> {
     pub bounds: &'a [f64],
@@ -442,7 +443,7 @@ impl<'a> Beside<'a> {
     }
 }
 
-/// What is said before the deviations of what is no estimate: it is not off by what measurements could tell.
+/// What is said before the deviations where there is no estimate: its error is not what measurements could reach at best.
 pub(super) fn worth_in_words(update: &Update) -> &'static str {
     match () {
         () if update.is_held() => "  not estimated, at best",

@@ -6,7 +6,7 @@ use palmistry_scenes::{Closure, ClosureSetting, ComputedRank};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// From when on, in words.
+/// From when on, as text.
 fn begins(closure: &Closure) -> String {
     let [met, all] = closure.samples;
     match closure.from {
@@ -41,14 +41,14 @@ pub(super) fn closure_text(closure: &Closure) -> String {
         );
     }
     for setting in &closure.settings {
-        let (gained, left) = (listed(&setting.gained()), listed(&setting.not_told()));
+        let (gained, left) = (listed(&setting.gained()), listed(&setting.unobservable()));
         let _ = writeln!(text, "  {}: gained {gained}; non-identifiable {left}", setting.read);
     }
     text
 }
 
 fn rank_json(rank: &ComputedRank, unknowns: &[&str]) -> Value {
-    let told = unknowns.iter().zip(&rank.told).filter(|(_, told)| **told);
+    let told = unknowns.iter().zip(&rank.observable).filter(|(_, told)| **told);
     json!({
         "rank": rank.rank,
         "estimated": told.map(|(name, _)| *name).collect::<Vec<_>>(),
@@ -94,7 +94,7 @@ pub(super) fn closure_section(closure: &Closure) -> Markup {
                             td.n { (setting.without.rank) }
                             td.n { (setting.with.rank) }
                             td { (listed(&setting.gained())) }
-                            td { (listed(&setting.not_told())) }
+                            td { (listed(&setting.unobservable())) }
                         }
                     }
                 }

@@ -49,7 +49,7 @@ impl Curve {
     }
 }
 
-/// Colours that all eyes tell apart; so do the marks' shapes.
+/// Colours that all eyes distinguish; so do the marks' shapes.
 fn look(shown: Shown) -> (RGBColor, u32, Option<usize>) {
     match shown {
         Shown::Truth => (TRUTH, 6, None),
@@ -248,7 +248,7 @@ fn entry(
     Ok(())
 }
 
-/// Half transparent, so that it is seen on light and on dark pages.
+/// Half transparent, so that it is visible on light and on dark pages.
 const BAND: RGBAColor = RGBAColor(200, 170, 80, 0.25);
 
 /// Fewer points that draw the same picture: of each piece of time the first, the lowest, the highest and the last.
@@ -269,7 +269,7 @@ fn thinned(points: &[(f64, f64)], times: (f64, f64)) -> Vec<(f64, f64)> {
     found
 }
 
-/// The pieces of a curve that lie within a range of heights, cut where it leaves and enters. A point that has no number ends a
+/// The pieces of a curve that lie within a range of heights, cut where it leaves and enters it. A point that has no number ends a
 /// piece.
 fn cut(points: &[(f64, f64)], (low, high): (f64, f64)) -> Vec<Vec<(f64, f64)>> {
     let inside = |y: f64| (low..=high).contains(&y);

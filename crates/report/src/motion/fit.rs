@@ -1,4 +1,4 @@
-//! Whether what an observer found explains the readings, in words and as JSON; and what would not be noticed.
+//! Whether what an observer found explains the measurements, as text and as JSON; and what would not be noticed.
 
 use palmistry_observe::{Fit, NoiseFrom, Suspect, Update, UpdateEnd};
 use serde_json::{Map, Value, json};
@@ -31,11 +31,11 @@ pub(super) fn p_in_words(probability: f64) -> String {
 pub(super) fn fit_in_words(update: &Update) -> String {
     let Some(fit) = &update.fit else { return String::new() };
     match update.end {
-        // a search that has not ended is tested by nothing, but what it leaves of a noise that is known is of use
+        // a search that has not ended has no test, but its residual against a known noise is of use
         UpdateEnd::StepsSpent if !fit.fits && fit.degrees > 0 && fit.from == NoiseFrom::Stated => {
             format!(", does not fit where it stands: {}", unexplained(update, fit))
         }
-        UpdateEnd::Blind { .. } | UpdateEnd::Lost(_) | UpdateEnd::StepsSpent => String::new(),
+        UpdateEnd::Unobservable { .. } | UpdateEnd::Lost(_) | UpdateEnd::StepsSpent => String::new(),
         _ if fit.fits => format!(", {}", explained(fit)),
         _ => format!(", fails the test of fit: {}", unexplained(update, fit)),
     }
@@ -81,12 +81,12 @@ pub(super) fn unexplained(update: &Update, fit: &Fit) -> String {
     }
 }
 
-/// Whether an error that is noticed is one of which one would speak: below all of it, or within a tenth of a second.
+/// Whether the least error that is noticed is small enough to be reported: below 100 %, or 1 s.
 fn is_told(suspect: &Suspect) -> bool {
     suspect.noticed.is_some_and(|noticed| noticed < 1.0)
 }
 
-/// What the readings of an update tell of all that is taken for known.
+/// What the measurements of an update say of all that is taken for known.
 pub(super) fn suspects_in_words(update: &Update) -> Vec<String> {
     let mut lines = Vec::new();
     let (told, hidden): (Vec<&Suspect>, Vec<&Suspect>) =

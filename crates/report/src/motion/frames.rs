@@ -11,7 +11,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 /// What each palm touched, recovered.
 pub(super) const PALM_COLOURS: [RGBColor; 2] = [RGBColor(0, 114, 178), RGBColor(213, 94, 0)];
 pub(super) const TRUE_OUTLINE: RGBColor = RGBColor(150, 156, 165);
-/// Recovered where the observer could not see.
+/// Recovered where the state was unobservable.
 const UNSEEN: RGBColor = RGBColor(205, 209, 215);
 /// Twice the size in which they are shown: places are whole pixels, and a curve of few pixels is not smooth.
 const CELL: (u32, u32) = (400, 336);
@@ -79,7 +79,7 @@ fn dots(
         for instant in instants {
             let (x, y) = pixel(instant.points[palm]);
             if last.is_none_or(|(a, b)| (x - a).abs().max((y - b).abs()) > size) {
-                let colour = if instant.seen { colour } else { UNSEEN };
+                let colour = if instant.is_observed { colour } else { UNSEEN };
                 area.draw(&Circle::new((x, y), size, colour.filled()))?;
                 last = Some((x, y));
             }
@@ -177,7 +177,7 @@ pub(super) fn recovered_outline(shape: Option<&Shape>, outline: &TouchTrack) -> 
             area.draw(&PathElement::new([(x, 104), (x + 44, 104)], TRUE_OUTLINE.stroke_width(6)))?;
             area.draw(&Text::new("true", (x + 56, 104), left(24)))?;
         }
-        if !outline.instants.iter().all(|instant| instant.seen) {
+        if !outline.instants.iter().all(|instant| instant.is_observed) {
             area.draw(&Circle::new((x + 160, 104), 6, UNSEEN.filled()))?;
             area.draw(&Text::new("while it could not see", (x + 178, 104), left(24)))?;
         }

@@ -8,7 +8,7 @@ use palmistry_scenes::{Experiment, ModeEstimate, ModeWindow};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
-/// What the rank says of an observer in a window.
+/// The rank of an observer's system in a window.
 fn rank_json(rank: &MotionRankFound, objection: Option<&Objection>) -> Value {
     json!({
         "samples": rank.asked,
@@ -112,7 +112,7 @@ pub fn modes_text(experiment: &Experiment, windows: &[ModeWindow]) -> String {
     text
 }
 
-/// What the rank says of an observer, and what came of it.
+/// The rank of an observer's system, and what came of it.
 fn rank_line(text: &mut String, estimate: &ModeEstimate) {
     let Some(rank) = &estimate.rank else { return };
     let is_certain = if rank.certified { ", certified" } else { "" };

@@ -25,7 +25,7 @@ fn angle(i: usize) -> f64 {
     TAU * i as f64 / NORMALS as f64
 }
 
-/// By what round factor a band is drawn wider than it is, so that it can be seen: not wider than a twelfth of the radius.
+/// By what round factor a band is drawn wider than it is, so that it is visible: not wider than a twelfth of the radius.
 fn magnification(shape: &ShapeEstimate, counts: impl Fn(f64) -> bool) -> f64 {
     let widest =
         (0..NORMALS).map(angle).filter(|angle| counts(*angle)).map(|angle| 2.0 * shape.deviation(angle));
@@ -38,7 +38,8 @@ fn magnification(shape: &ShapeEstimate, counts: impl Fn(f64) -> bool) -> f64 {
     [5.0, 2.0].into_iter().map(|k| k * power).find(|factor| *factor <= most).unwrap_or(power)
 }
 
-/// How far the edge of a band is drawn from its outline, in m: what is not known at all, as in a gap of half a turn, does not fill the page, and the outline within is where it is.
+/// How far the edge of a band is drawn from its outline, in m: an infinite band, as in a gap of half a turn, does not fill the page, and the outline within is
+/// where it is.
 fn drawn(band: f64, mean: f64) -> f64 {
     band.min(0.3 * mean.abs())
 }
@@ -105,7 +106,7 @@ fn runs(counts: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
     runs
 }
 
-/// The band over the angle of the normal, in a unit in which it is easily read, and the error in it where the truth is known.
+/// The band over the angle of the normal, in a convenient unit, and the error in it where the truth is known.
 pub(super) fn band_picture(found: &Reconstruction, shape: &ShapeEstimate, truth: Option<&Shape>) -> String {
     let covered = |angle: f64| found.coverage.contains(angle);
     let band = |angle: f64| shape.band(&found.coverage, angle);

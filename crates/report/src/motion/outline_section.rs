@@ -1,4 +1,4 @@
-//! The shape that an experiment tells, as a part of a page.
+//! The shape that is recovered from an experiment, as a part of a page.
 
 use crate::motion::answers::Observed;
 use crate::motion::outline_plot::{band_picture, outline_picture};

@@ -120,7 +120,7 @@ steps = 20
 
     /// The second witness is the simulation: its shape, from a support function, knows no r and d, and its poses no omega0 of an
     /// observer. The trapezoidal rule is off by `h^2/12` times what the acceleration has grown by (Euler and Maclaurin); besides,
-    /// estimates from readings without error are good to 1e-6 m and rad/s, and bodies here reach no farther than 1.2 m.
+    /// estimates from measurements without error are good to 1e-6 m and rad/s, and bodies here reach no farther than 1.2 m.
     #[test]
     fn recovered_contacts_lie_on_the_true_outline() {
         with_observed(|observed| {

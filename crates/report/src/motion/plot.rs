@@ -1,4 +1,4 @@
-//! What observers made of an experiment, over time: as figure 4.4, and the errors beside the bound.
+//! What observers made of an experiment, over time: as figure 4.4, and the errors beside the Cramér-Rao bound.
 
 use crate::axis::{axis, unit_of};
 use crate::motion::answers::Observed;
@@ -35,7 +35,7 @@ fn truth(observed: &Observed<'_>, name: &str) -> Vec<(f64, f64)> {
 }
 
 /// A range that shows the truth and, as far as they come near it, the recovered values; of these most where there is no truth, with their bars unless these are longer than all that
-/// there is to see.
+/// there is to show.
 fn range(truth: &[(f64, f64)], curves: &[Curve], bars: &[[f64; 2]]) -> (f64, f64) {
     let ends = |values: &[f64]| {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -80,7 +80,7 @@ fn bounds(answer: &Answer, place: usize) -> Vec<(f64, f64, f64)> {
     begins.chain(between).filter(|(_, _, deviation)| deviation.is_finite()).collect()
 }
 
-/// One state over time: true, and as each method recovered it, with two standard deviations of the bound.
+/// One state over time: true, and as each method recovered it, with two standard deviations of the Cramér-Rao bound.
 pub(super) fn state(observed: &Observed<'_>, place: usize) -> String {
     let names = observed.experiment.names();
     let Some(name) = names.get(place) else { return String::new() };
@@ -132,7 +132,7 @@ fn decades(curves: &[Curve], also: impl Iterator<Item = f64>) -> (f64, f64) {
     (low - room.floor(), high + room.ceil())
 }
 
-/// The distance of each method's values from the truth over time, logarithmic, with the bound. None without a truth.
+/// The distance of each method's values from the truth over time, logarithmic, with the Cramér-Rao bound. None without a truth.
 pub(super) fn errors(observed: &Observed<'_>, place: usize) -> Option<String> {
     let names = observed.experiment.names();
     let name = names.get(place)?;
@@ -166,7 +166,7 @@ pub(super) fn errors(observed: &Observed<'_>, place: usize) -> Option<String> {
     (!truth.is_empty()).then(|| draw(&frame, &curves))
 }
 
-/// The names of the outputs that the observers compare with readings, in the order of their surprises, and the standard deviation
+/// The names of the outputs that the observers compare with measurements, in the order of their surprises, and the standard deviation
 /// of these measurements: none where they have no error.
 fn outputs(observed: &Observed<'_>) -> Option<(Vec<String>, Option<f64>)> {
     let never = AtomicBool::new(false);
@@ -185,7 +185,7 @@ fn sizes(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     points.chunks((points.len() / STRETCHES).max(5)).map(root).collect()
 }
 
-/// The sensor error, expected minus read: of one method as it is, as figure 4.4d, and the size of every method's, an output each.
+/// The sensor error, expected minus measured: of one method as it is, as figure 4.4d, and the size of every method's, an output each.
 pub(super) fn sensor_errors(observed: &Observed<'_>) -> Vec<String> {
     let Some((names, sigma)) = outputs(observed) else { return Vec::new() };
     let surprises = |answer: &Answer, output: usize| -> Vec<(f64, f64)> {
@@ -278,7 +278,7 @@ mod tests {
             range(&[(0.0, 1.0), (1.0, 1.0)], &[Curve::truth(vec![(0.0, 1.5), (1.0, 1.6)])], &[]);
         assert!(low < 1.0 && high > 1.6, "{low} {high}");
         assert_eq!(range(&[], &[], &[]), (0.0, 1.0));
-        // a constant that was estimated: its bars are seen, and one that is longer than all else is not
+        // a constant that was estimated: its bars are shown, and one that is longer than all else is not
         let flat = [Curve::truth(vec![(0.0, 1.0), (1.0, 1.0)])];
         let (low, high) = range(&[], &flat, &[[0.97, 1.03], [-9.0, 11.0]]);
         assert!(low < 0.97 && low > 0.8 && high > 1.03 && high < 1.2, "{low} {high}");

@@ -1,4 +1,4 @@
-//! Which of several known bodies was read, as text, JSON and for the page.
+//! Which of several known bodies was measured, as text, JSON and for the page.
 
 use super::fit::{finite, p_in_words};
 use maud::{Markup, html};
@@ -7,7 +7,7 @@ use palmistry_scenes::{LibraryAnswer, Recognition, RecognitionVerdict};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// The verdict in a word or two, for those who read it by program.
+/// The verdict in a word or two, for programs.
 fn word(verdict: &RecognitionVerdict) -> &'static str {
     match verdict {
         RecognitionVerdict::Recognised(_) => "recognised",

@@ -1,4 +1,4 @@
-//! The shape that an experiment tells, in words and as JSON.
+//! The shape that is recovered from an experiment, as text and as JSON.
 
 use crate::motion::fit::finite;
 use crate::motion::shape::support_error;
@@ -21,7 +21,7 @@ pub(super) fn reconstruction(answers: &[Answer]) -> Option<&Reconstruction> {
     shown(answers)?.reconstruction.as_deref()
 }
 
-/// A length in a unit in which it is easily read.
+/// A length in a convenient unit.
 pub(super) fn length(metres: f64) -> String {
     match metres {
         m if m < 1e-6 => format!("{:.2} nm", m * 1e9),
@@ -59,7 +59,7 @@ fn degrees(gap: &[f64; 2]) -> String {
     format!("{:.0}° to {:.0}°", gap[0].to_degrees(), gap[1].to_degrees())
 }
 
-/// The gaps of the coverage in words; nothing where there is none.
+/// The gaps of the coverage as text; nothing where there is none.
 pub(super) fn gaps(found: &Reconstruction) -> String {
     let gaps: Vec<String> = found.coverage.gaps().iter().map(degrees).collect();
     if gaps.is_empty() { String::new() } else { format!("; not from {}", gaps.join(", ")) }
@@ -92,9 +92,9 @@ pub(super) fn from_in_words(found: &Reconstruction) -> String {
     }
 }
 
-/// That there is no shape: where something was seen of the body, remarks say why.
+/// That there is no shape: where some sample was observable, remarks say why.
 pub(super) fn no_shape_in_words(found: &Reconstruction) -> &'static str {
-    match found.track.instants.iter().any(|at| at.seen) {
+    match found.track.instants.iter().any(|at| at.is_observed) {
         true => "no estimate",
         false => "no estimate: no sample is observable",
     }
@@ -221,7 +221,8 @@ pub(super) fn reasons(found: &Reconstruction) -> Vec<String> {
     contradiction.chain(too_wide).chain(found.apart.iter().map(apart_in_words)).collect()
 }
 
-/// Perimeter and area: of a body that was touched all round with their deviations, else what its contacts leave, whatever lies in the gaps. What is neither is not told.
+/// Perimeter and area: of a body that was touched all round with their deviations, else the bounds from its contacts, whatever lies in the gaps. Not given
+/// where these are not a convex body's.
 pub(super) fn sizes_in_words(
     found: &Reconstruction,
     shape: &ShapeEstimate,
@@ -270,7 +271,7 @@ pub(super) fn shape_json(experiment: &Experiment, answers: &[Answer]) -> Option<
     let found = reconstruction(answers)?;
     let mut json = json!({
         "method": found.track.method.name(),
-        "from": if found.whole.is_some() { "all readings" } else { "track" },
+        "from": if found.whole.is_some() { "all measurements" } else { "track" },
         "coverage": found.coverage.fraction(),
         "gaps": found.coverage.gaps(),
     });

@@ -1,4 +1,4 @@
-//! An experiment as a part of a page: pictures first, then what each observer found, in tables and in words.
+//! An experiment as a part of a page: pictures first, then what each observer found, in tables and as text.
 
 use crate::motion::answers::{Observed, fault_lines, noise_unit, sparse_lines};
 use crate::motion::frames::{frames, recovered_outline};
@@ -69,7 +69,7 @@ fn shape_in_words(shape: &SceneOutline) -> String {
     }
 }
 
-/// What was simulated or read, and what was asked for.
+/// What was simulated or loaded, and what was asked for.
 pub(super) fn summary(observed: &Observed<'_>) -> Markup {
     let experiment = observed.experiment;
     let (scene, times) = (&experiment.scene, experiment.signals.times());
@@ -141,7 +141,7 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
     }
 }
 
-/// How a column is read that has its own sensor.
+/// The sensor of a column that has its own.
 fn channel_in_words(name: &str, own: &Channel) -> String {
     let mut parts = Vec::new();
     if let Some(noise) = own.noise.filter(|noise| *noise > 0.0) {
@@ -246,7 +246,7 @@ pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
                 "The palms about their joint at " (outline.instants.len().min(most)) " samples. Large dots are the "
                 "centre of mass and the two contacts. Small dots are the part of the outline that " b { (outline.method.name()) }
                 " has recovered by then, blue where palm 1 touched it and orange where palm 2 did"
-                @if !outline.instants.iter().all(|instant| instant.seen) { ", pale where it could not see" }
+                @if !outline.instants.iter().all(|instant| instant.is_observed) { ", pale where it could not see" }
                 ". "
                 @if shape.is_some() {
                     "The thin line is the true outline; dots beside it are errors of the observer, or of the orientation, which is the "
@@ -274,7 +274,7 @@ pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
     }
 }
 
-/// As figure 4.4b and c: each state over time, and its errors beside the bound.
+/// As figure 4.4b and c: each state over time, and its errors beside the Cramér-Rao bound.
 pub(super) fn state_pictures(observed: &Observed<'_>) -> Markup {
     let places = 0..observed.experiment.names().len();
     let known = observed.experiment.simulated().is_some();

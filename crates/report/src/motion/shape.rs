@@ -18,9 +18,10 @@ pub(super) fn outline<'a>(experiment: &Experiment, answers: &'a [Answer]) -> Opt
 }
 
 /// The largest distance of a recovered point from the true outline, and the root of their mean square, in m; over the
-/// samples at which the observer could see; none where there is no such sample.
+/// samples at which the state was observable; none where there is no such sample.
 pub(super) fn departure(track: &TouchTrack, shape: &Shape) -> Option<(f64, f64)> {
-    let points = track.instants.iter().filter(|instant| instant.seen).flat_map(|instant| instant.points);
+    let points =
+        track.instants.iter().filter(|instant| instant.is_observed).flat_map(|instant| instant.points);
     largest_and_mean(points.map(|point| distance(shape, point)))
 }
 

@@ -1,11 +1,11 @@
 //! What the studies of a scene came to, as JSON and as text.
 
 use crate::motion::fit::finite;
-use palmistry_scenes::{Basin, CurvatureMap, NoiseLevel, Studied, Told};
+use palmistry_scenes::{Basin, CurvatureMap, NoiseLevel, Studied, WindowBound};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
-/// Adds each study that was made, of what is sought by these names.
+/// Adds each study that was made, of the estimated states by these names.
 pub(super) fn studies_json(studied: &Studied, names: &[&str], found: &mut Value) {
     if !studied.noise.is_empty() {
         let level = |level: &NoiseLevel| {
@@ -40,18 +40,18 @@ pub(super) fn studies_json(studied: &Studied, names: &[&str], found: &mut Value)
     }
 }
 
-fn told_json(told: Told) -> Value {
+fn bound_json(told: WindowBound) -> Value {
     match told {
-        Told::NotHeld => json!("not held"),
-        Told::Blind => json!("blind"),
-        Told::Bound(bound) => json!(bound),
+        WindowBound::NotHeld => json!("not held"),
+        WindowBound::Unobservable => json!("not observable"),
+        WindowBound::Bound(bound) => json!(bound),
     }
 }
 
 fn curvature_json(map: &CurvatureMap) -> Value {
     let side = map.curvatures.len();
     let motions = map.motions.iter().map(|motion| {
-        json!({ "orientation": motion.orientation, "rate": motion.rate, "flat": told_json(motion.flat) })
+        json!({ "orientation": motion.orientation, "rate": motion.rate, "flat": bound_json(motion.flat) })
     });
     let pairs = map.told.iter().enumerate().map(|(cell, told)| {
         let ratio = map.ratio(cell).map(|ratio| {
@@ -64,7 +64,7 @@ fn curvature_json(map: &CurvatureMap) -> Value {
         });
         json!({
             "curvatures": [map.curvatures[cell % side], map.curvatures[cell / side]],
-            "bounds": told.iter().map(|told| told.map_or(Value::Null, told_json)).collect::<Vec<_>>(),
+            "bounds": told.iter().map(|told| told.map_or(Value::Null, bound_json)).collect::<Vec<_>>(),
             "over_flat": ratio,
         })
     });
@@ -76,7 +76,7 @@ fn curvature_json(map: &CurvatureMap) -> Value {
 }
 
 fn of_ratio(ratio: f64) -> Value {
-    if ratio.is_finite() { json!(ratio) } else { json!("blind") }
+    if ratio.is_finite() { json!(ratio) } else { json!("not observable") }
 }
 
 /// Adds a paragraph for each study; noise is in this unit.
@@ -120,18 +120,18 @@ fn curvature_text(map: &CurvatureMap, text: &mut String) {
     }
 }
 
-/// The median of a pair of curvatures in words.
+/// The median of a pair of curvatures as text.
 pub(super) fn ratio_words(map: &CurvatureMap, cell: usize) -> String {
     match map.ratio(cell) {
         Some(ratio) if ratio.median.is_finite() => format!("{:.2}", ratio.median),
-        Some(_) => "blind".to_owned(),
+        Some(_) => "not observable".to_owned(),
         None => "none".to_owned(),
     }
 }
 
 /// Of how many motions a map is the median.
 pub(super) fn compared(map: &CurvatureMap) -> String {
-    let seen = map.motions.iter().filter(|motion| matches!(motion.flat, Told::Bound(_))).count();
+    let seen = map.motions.iter().filter(|motion| matches!(motion.flat, WindowBound::Bound(_))).count();
     format!(
         "the median of those of {seen} motions in which the body is held (of {}, from flat palms it is unobservable or not held in the others), contacts measured to {:.1e} m",
         map.motions.len(),

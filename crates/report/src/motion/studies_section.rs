@@ -56,7 +56,7 @@ pub(super) fn studies(observed: &Observed<'_>) -> Markup {
     }
 }
 
-/// The error over noise beside its bound.
+/// The error over noise beside its Cramér-Rao bound.
 fn noise_table(observed: &Observed<'_>) -> Markup {
     let unit = noise_unit(observed);
     let names = observed.experiment.names();

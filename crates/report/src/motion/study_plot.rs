@@ -1,5 +1,5 @@
-//! Studies of observers as pictures: the error over noise beside its bound, the first guesses from which a method arrives, and what palms of
-//! other curvatures tell.
+//! Studies of observers as pictures: the error over noise beside its bound, the first guesses from which a method arrives, and the bounds with palms of
+//! other curvatures.
 
 use crate::axis::number;
 use crate::drawing::{Canvas, INK, MESH, escaped, svg};
@@ -15,7 +15,7 @@ const BOUND: RGBColor = RGBColor(213, 94, 0);
 const ARRIVES: RGBColor = RGBColor(86, 156, 214);
 const FAILS: RGBColor = RGBColor(236, 226, 205);
 
-/// The root of the mean square error of a state and its bound over the noise of the readings, both axes logarithmic.
+/// The root of the mean square error of a state and its Cramér-Rao bound over the noise of the measurements, both axes logarithmic.
 pub(super) fn noise(observed: &Observed<'_>, place: usize) -> String {
     let names = observed.experiment.names();
     let Some(name) = names.get(place) else { return String::new() };
@@ -147,7 +147,7 @@ pub(super) fn basin(observed: &Observed<'_>, basin: &Basin) -> String {
     })
 }
 
-/// The bound over that of flat palms, over the curvatures of both palms: blue where it is less, ochre where it is more.
+/// The Cramér-Rao bound over that of flat palms, over the curvatures of both palms: blue where it is less, ochre where it is more.
 pub(super) fn curvature(map: &CurvatureMap) -> String {
     const LESS: RGBColor = ARRIVES;
     const MORE: RGBColor = RGBColor(213, 150, 60);
@@ -211,5 +211,5 @@ pub(super) fn curvature(map: &CurvatureMap) -> String {
     })
 }
 
-/// More fields along a side have no words in them.
+/// More fields along a side have no texts in them.
 const MOST_WORDS: usize = 9;

@@ -1,4 +1,4 @@
-//! What each observer found, as tables: at the end, update by update, and what it could not see.
+//! What each observer found, as tables: at the end, update by update, and what was unobservable.
 
 use crate::motion::answers::{Observed, end_name, state_name, worth_in_words};
 use crate::motion::fit::{p_in_words, suspects_in_words, unexplained};
@@ -189,7 +189,7 @@ fn update_table(observed: &Observed<'_>, answer: &Answer) -> Markup {
     }
 }
 
-/// What the observers could not see or follow, and what else they have to say.
+/// The samples that were unobservable or could not be followed, and what else the observers report.
 pub(super) fn notes(observed: &Observed<'_>) -> Markup {
     let samples = observed.experiment.signals.times().len();
     let mut lines = Vec::new();
@@ -204,7 +204,7 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
         for update in &answer.track.updates {
             let from = update.from;
             match &update.end {
-                UpdateEnd::Blind { weakest } => {
+                UpdateEnd::Unobservable { weakest } => {
                     lines.push(format!("{name} from {from:.3} s: {}", blind(observed, update, weakest)));
                 }
                 UpdateEnd::Converged => {}
@@ -269,11 +269,11 @@ fn all_is_well(observed: &Observed<'_>) -> String {
     }
 }
 
-/// The direction that the readings of a window tell least of, by the names of what is sought.
+/// The direction that the measurements of a window determine least, by the names of the estimated states.
 fn blind(observed: &Observed<'_>, update: &Update, weakest: &[f64]) -> String {
     let experiment = observed.experiment;
     let first = experiment.signals.times().first() == Some(&update.from);
-    // what the first window may not change has no part in the direction; readings that are unknown come last
+    // what the first window may not change has no part in the direction; measurements that are unknown come last
     let names = experiment.names();
     let clamped = |name: &str| first && experiment.question.clamped.iter().any(|other| other == name);
     let mut parts: Vec<(&str, f64)> =

@@ -1,4 +1,4 @@
-//! Whether all windows together are explained, and the innovations of a filter, in words and as JSON.
+//! Whether all windows together are explained, and the innovations of a filter, as text and as JSON.
 
 use super::fit::{finite, p_in_words};
 use palmistry_observe::{Innovations, Together, Track};

@@ -16,7 +16,7 @@ pub(super) struct Anchors {
     theorems: BTreeMap<(usize, String), String>,
 }
 
-/// The addresses of theorems, by the file and the id of the claim, as seen from the page.
+/// The addresses of theorems, by the file and the id of the claim, relative to the page.
 pub type TheoremAddresses = BTreeMap<(String, String), String>;
 
 /// A text without what has a meaning in addresses.

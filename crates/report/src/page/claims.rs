@@ -8,7 +8,7 @@ use palmistry_lang::Flaw;
 use palmistry_prove::claim::Outcome;
 use palmistry_workbench::paper::Numbering;
 
-/// How many claims have each word; the numbers add up to all of them.
+/// How many claims have each verdict; the numbers add up to all of them.
 pub(super) fn tally(outcomes: &[&Outcome]) -> Markup {
     let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
     html! {
@@ -54,7 +54,7 @@ pub(super) fn equations(numbering: &Numbering, claims: &[Placed<'_>], anchors: &
             div.cells {
                 @for equation in &all {
                     @let ids = equation.entries.iter().map(|o| o.id.as_str()).collect::<Vec<_>>().join(", ");
-                    // the entry that gives the equation its word, or the first one
+                    // the entry that gives the equation its verdict, or the first one
                     @let first = equation.entries.iter().find(|o| o.word() == equation.word()).or(equation.entries.first());
                     @match first.and_then(|outcome| place(outcome)) {
                         Some(claim) => {

@@ -7,7 +7,7 @@ use crate::formula::{conditions_mathml, formula_mathml};
 use crate::names::by_default_text;
 use maud::{Markup, PreEscaped, html};
 use palmistry_prove::drops::{BoxShare, DropAnswer, DropSet, UsedMinor};
-use palmistry_rank::observability::StateInWords;
+use palmistry_rank::observability::WrittenState;
 
 /// Longer formulas are cut off; the JSON has all of them.
 const LONGEST: usize = 400;
@@ -209,7 +209,7 @@ fn in_short(text: &str, longest: usize) -> String {
     }
 }
 
-fn at(state: &StateInWords) -> Markup {
+fn at(state: &WrittenState) -> Markup {
     html! {
         @for (place, at) in state.iter().enumerate() {
             @if place > 0 { ", " }

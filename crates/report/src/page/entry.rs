@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 pub(super) fn entry(claim: Placed<'_>, anchors: &Anchors, engines: &Engines<'_>) -> Markup {
     let Placed { file, outcome } = claim;
     let anchor = anchors.claim(file, &outcome.id);
-    // most are proved: that is what an entry without a word looks like
+    // most are proved: that is what an entry without a verdict means
     let word = Some(outcome.word()).filter(|word| *word != "proved");
     html! {
         article #(anchor) data-w=[word] class=[(!outcome.ok).then_some("bad")] {

@@ -45,7 +45,7 @@ fn object_of<T>(list: &[(String, T)], value: impl Fn(&T) -> Value) -> Value {
     list.iter().map(|(name, one)| (name.clone(), value(one))).collect::<serde_json::Map<_, _>>().into()
 }
 
-/// A standard deviation over its prior one; where it is infinite this word, since null is a pole.
+/// A standard deviation over its prior one; where it is infinite a string, since null is a pole.
 fn deviation_json(value: f64) -> Value {
     if value.is_finite() { json!(four_digits(value)) } else { json!("infinite") }
 }
@@ -220,8 +220,8 @@ pub fn findings_json(found: &Findings) -> Value {
     })
 }
 
-/// Replaces each time on the wall that a page would tell by NaN, and leaves out what rests on such times: two runs with one seed
-/// on one machine then tell the same to the last byte.
+/// Replaces each wall-clock time that a page would show by NaN, and leaves out what rests on such times: two runs with one seed
+/// on one machine then have the same output to the last byte.
 pub fn forget_times(found: &mut Findings) {
     found.seconds = f64::NAN;
     for file in &mut found.files {
@@ -366,7 +366,7 @@ fn file_text(file: &FileFindings, out: &mut String) {
     }
 }
 
-/// Everything that a reader of the terminal wants to see: what does not hold, the errata, and a line for the rest.
+/// Everything for the terminal: what does not hold, the errata, and a line for the rest.
 pub fn findings_text(found: &Findings) -> String {
     let mut out = String::new();
     let numbering = &found.paper.numbering;

@@ -1,4 +1,4 @@
-//! What is not seen as vector fields, and what is seen as functions, as mathematics.
+//! Unobservable directions as vector fields, and identifiable combinations as functions, as mathematics.
 
 use crate::formula::{field_mathml, formula_mathml_in};
 use crate::ranks::motions::{signed_parts, unobservable_field_text};
@@ -7,8 +7,8 @@ use palmistry_lang::Looks;
 use palmistry_rank::observability::{UnobservableDirections, UnobservableField};
 use palmistry_workbench::paper::SetRank;
 
-/// Of each set on which something is unseen, the fields and the functions.
-pub(super) fn unseen_motions(ranks: &[SetRank], looks: &Looks) -> Markup {
+/// For each set with unobservable directions, the fields and the functions.
+pub(super) fn unobservable_directions(ranks: &[SetRank], looks: &Looks) -> Markup {
     let found = ranks.iter().filter_map(|rank| Some((rank, rank.answer().ok()?)));
     let found: Vec<(&SetRank, &UnobservableDirections)> = found
         .flat_map(|(rank, answer)| {
@@ -38,9 +38,9 @@ fn of_a_set(name: &str, found: &UnobservableDirections, looks: &Looks) -> Markup
             @if !found.fields.is_empty() {
                 " Along such a field no output and none of its Lie derivatives changes (proved)."
             }
-            @if !found.seen.is_empty() {
+            @if !found.observable.is_empty() {
                 " Observable: "
-                @for (place, name) in found.seen_names.iter().enumerate() {
+                @for (place, name) in found.observable_names.iter().enumerate() {
                     @if place > 0 { ", " }
                     span.f { (expression(name, looks)) }
                 }

@@ -3,7 +3,7 @@
 use super::entry::{explain, formula};
 use super::findings::ranks_in_words;
 use super::inline::in_line;
-use super::motions::unseen_motions;
+use super::motions::unobservable_directions;
 use super::system::system_mathematics;
 use super::unknowns::unknowns;
 use crate::formula::conditions_mathml;
@@ -44,7 +44,7 @@ pub(super) fn file_section(anchor: &str, file: &FileFindings, claims: &Markup, u
             @if !file.ranks.is_empty() {
                 h3 { "What is observable" }
                 @for line in granted(file) { p { (capitalised(&line)) "." } }
-                (unknowns(&file.ranks, looks)) (unseen_motions(&file.ranks, looks)) (ranks(&file.ranks, looks))
+                (unknowns(&file.ranks, looks)) (unobservable_directions(&file.ranks, looks)) (ranks(&file.ranks, looks))
             }
             @for map in &file.maps { (maps(map, units)) }
             @if !file.lines.is_empty() { (lines(&file.lines, units)) }
@@ -207,9 +207,10 @@ fn in_symbols(lists: &[String], looks: &Looks) -> Markup {
     }
 }
 
-/// The words that were needed, branches with the same words together.
+/// The Lie derivatives that were used, branches with the same ones together.
 fn distinct_words(answer: &RankAnswer) -> Vec<String> {
-    let mut found: Vec<String> = answer.branches.iter().map(|branch| branch.words.join(", ")).collect();
+    let mut found: Vec<String> =
+        answer.branches.iter().map(|branch| branch.lie_derivatives.join(", ")).collect();
     found.dedup();
     found
 }

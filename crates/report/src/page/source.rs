@@ -20,7 +20,7 @@ pub(super) fn sources(systems: &[&System], anchors: &Anchors) -> Markup {
     }
 }
 
-/// A line in which everything is seen, its tabs as they are.
+/// A line in which every character is visible, its tabs as they are.
 fn in_letters(line: &str) -> String {
     line.split('\t').map(shown).collect::<Vec<_>>().join("\t")
 }

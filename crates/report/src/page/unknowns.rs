@@ -1,4 +1,4 @@
-//! What is seen at almost all states, on the page: a sentence, and a table of the unknowns.
+//! What is observable generically, on the page: a sentence, and a table of the unknowns.
 
 use super::inline::in_line;
 use crate::ranks::generic::{generic_sentence, unknown_verdict};
@@ -26,7 +26,7 @@ fn of_branch(branch: &BranchAnswer, looks: &Looks) -> Markup {
             @if !branch.conditions.is_empty() { ", where " (branch.conditions.join(", ")) }
             "."
         }
-        // where everything is seen the sentence says so of each
+        // where everything is observable the sentence says so of each
         @if branch.generic.rank() != Some(branch.generic.dimension) {
             table {
                 thead { tr { th { "unknown" } th { "is a" } th { "and is" } } }

@@ -70,7 +70,7 @@ fn plans_text(family: &[ConjectureFinding]) -> String {
         return String::new();
     }
     let (lengths, reading): (Vec<f64>, Vec<f64>) =
-        plans.iter().filter_map(|plan| Some((*plan.length.as_ref().ok()?, plan.reading?))).unzip();
+        plans.iter().filter_map(|plan| Some((*plan.length.as_ref().ok()?, plan.measurement?))).unzip();
     let done = lengths.len();
     let longest = lengths.iter().copied().fold(0.0, f64::max);
     let mut out = format!("  plans that touch all normals: {done} of {}", plans.len());
@@ -88,7 +88,7 @@ fn plans_text(family: &[ConjectureFinding]) -> String {
             .count();
         let _ = write!(out, "\n  {word} of plan 3.14 touch all of {all}, of {quiet} without a jump");
     }
-    let reading = median(plans.iter().map(|plan| plan.round_reading).collect()).unwrap_or_default();
+    let reading = median(plans.iter().map(|plan| plan.round_measurement).collect()).unwrap_or_default();
     let _ = writeln!(out, "; farthest contact, median {reading:.1} mean radii");
     for one in family {
         if let Some(Err(why)) = one.plan.as_ref().map(|plan| &plan.length) {
@@ -131,7 +131,7 @@ pub fn conjecture_json(findings: &[ConjectureFinding], question: &ConjectureQues
             .map(|(number, plan)| {
                 json!({
                     "number": number, "length": plan.length.as_ref().ok(), "why": plan.length.as_ref().err().map(ToString::to_string),
-                    "measurement": plan.reading, "rounded_measurement": plan.round_reading,
+                    "measurement": plan.measurement, "rounded_measurement": plan.round_measurement,
                     "coverage": plan.rounds.map(|round| round.0), "jumps": plan.rounds.map(|round| round.1),
                 })
             })

@@ -1,8 +1,9 @@
-//! Pictures of the surface of stable poses: itself, seen from the side (as figures 3.13 and 3.16), the palms' plans (3.14), and the body between its palms, still and in motion.
+//! Pictures of the surface of stable poses: itself, from the side (as figures 3.13 and 3.16), the palms' plans (3.14), and the body between its palms, still
+//! and in motion.
 
 use crate::drawing::{INK, MESH, SOFT, svg};
 use crate::moved_body::{MovedPose, moved_body, rows, still_body};
-use palmistry_bodies::pose_surface::{PalmPair, PoseSurvey, plan_of_figure_3_14, readings};
+use palmistry_bodies::pose_surface::{PalmPair, PoseSurvey, measurements, plan_of_figure_3_14};
 use plotters::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -126,7 +127,7 @@ fn moved(survey: &PoseSurvey, (palms, phi0): (PalmPair, f64)) -> MovedPose {
             (both.sin() * r1 + palms.phi1.sin() * r2) / sine,
         ],
         palms: [palms.phi1, palms.phi2],
-        contacts: readings(&survey.body, palms, phi0),
+        contacts: measurements(&survey.body, palms, phi0),
     }
 }
 

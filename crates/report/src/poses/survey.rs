@@ -29,7 +29,7 @@ fn component_words(one: &SurfaceComponent) -> String {
     }
 }
 
-/// What is certain, in words.
+/// What is certain, as text.
 fn certificate_words(survey: &PoseSurvey) -> String {
     let Some(found) = &survey.certificate else {
         return "nothing is certified of this kind of body\n".to_owned();

@@ -28,7 +28,7 @@ fn branch_json(branch: &AccessibilityBranch) -> Value {
     }
     json!({
         "conditions": branch.conditions,
-        "held_at_the_files_values": values_json(&branch.held),
+        "fixed_at_the_files_values": values_json(&branch.held),
         "brackets": branch.brackets,
         "order": branch.order,
         "stopped_because": stop_text(branch.stop),

@@ -21,9 +21,9 @@ fn histogram_json(histogram: &BTreeMap<usize, u64>) -> Value {
         .into()
 }
 
-/// How many states each rung of the ladder decided.
+/// How many states each number type decided.
 fn rungs_json(report: &SweepReport) -> Value {
-    let counts = report.rungs.iter().map(|(rung, count)| (rung.name(), json!(count)));
+    let counts = report.number_types.iter().map(|(number_type, count)| (number_type.name(), json!(count)));
     counts.collect::<serde_json::Map<_, _>>().into()
 }
 
@@ -53,7 +53,7 @@ fn digits_json(found: &Result<Digits, NoDigits>) -> Value {
             "singular_values": found.values,
             "condition": found.condition,
             "verdict": certainty_text(found.certainty),
-            "numbers": found.rung.name(),
+            "numbers": found.number_type.name(),
             "escalated": found.climbed,
         }),
         Err(why) => json!({ "missing": why.to_string() }),
@@ -125,9 +125,9 @@ pub(crate) fn stop_text(stop: Stop) -> &'static str {
 fn branch_json(branch: &BranchAnswer) -> Value {
     let mut object = sweep_json(&branch.full);
     object["conditions"] = json!(branch.conditions);
-    object["held_at_the_files_values"] = values_json(&branch.held);
+    object["fixed_at_the_files_values"] = values_json(&branch.held);
     object["drawn_by_default"] = ranges_json(&branch.by_default);
-    object["lie_derivatives"] = json!(branch.words);
+    object["lie_derivatives"] = json!(branch.lie_derivatives);
     object["order"] = json!(branch.order);
     object["stopped_because"] = json!(stop_text(branch.stop));
     object["generic_rank"] = json!(branch.generic_rank);
@@ -228,12 +228,18 @@ fn directions_text(report: &SweepReport, short_up_to: Option<usize>, out: &mut S
 
 /// How the ranks at the sampled states were decided.
 fn sweep_details(report: &SweepReport, out: &mut String) {
-    let rungs: Vec<String> =
-        report.rungs.iter().map(|(rung, count)| format!("{} at {count}", rung.name())).collect();
-    if !rungs.is_empty() {
+    let number_types: Vec<String> = report
+        .number_types
+        .iter()
+        .map(|(number_type, count)| format!("{} at {count}", number_type.name()))
+        .collect();
+    if !number_types.is_empty() {
         let climbed = report.climbed();
         item(
-            &format!("number types: {}; {climbed} states escalated to a higher precision", rungs.join(", ")),
+            &format!(
+                "number types: {}; {climbed} states escalated to a higher precision",
+                number_types.join(", ")
+            ),
             out,
         );
     }
@@ -270,7 +276,10 @@ fn digits_text(report: &SweepReport, out: &mut String) {
                 item(&format!("its singular values: {}", found.values.join(", ")), out);
             }
             let (kind, climbed) = (certainty_text(found.certainty), counted(found.climbed, "escalation"));
-            item(&format!("{} digits, {kind} by {} after {climbed}", found.digits, found.rung.name()), out);
+            item(
+                &format!("{} digits, {kind} by {} after {climbed}", found.digits, found.number_type.name()),
+                out,
+            );
         }
         Err(why) => item(&format!("no digits beyond those of doubles: {why}"), out),
     }
@@ -360,7 +369,7 @@ fn branch_text(branch: &BranchAnswer, details: bool, out: &mut String) {
     }
     if details {
         let longest = branch.order;
-        item(&format!("Lie derivatives used: {}", branch.words.join(", ")), out);
+        item(&format!("Lie derivatives used: {}", branch.lie_derivatives.join(", ")), out);
         item(&format!("Lie derivatives up to order {longest} were taken: {}", stop_text(branch.stop)), out);
         sweep_details(&branch.full, out);
     }

@@ -47,7 +47,7 @@ fn set_in_words(additions: &[Addition]) -> String {
 
 /// What is known of a target as things stand.
 fn now(target: &DesignTarget) -> String {
-    let local = unknown_verdict(target.kind, target.seen);
+    let local = unknown_verdict(target.kind, target.observability);
     let globally = if target.kind == UnknownKind::Parameter { "identifiable" } else { "observable" };
     match &target.solutions {
         Some(Solutions::Finite(1)) => format!("globally {globally}"),
@@ -66,7 +66,7 @@ fn target_json(target: &DesignTarget) -> Value {
     json!({
         "name": target.name,
         "kind": target.kind.name(),
-        "local": unknown_verdict(target.kind, target.seen),
+        "local": unknown_verdict(target.kind, target.observability),
         "values": solutions,
     })
 }
@@ -93,7 +93,7 @@ pub fn design_json(answer: &DesignAnswer) -> Value {
         "file": answer.file,
         "title": answer.title,
         "globally": answer.globally,
-        "held_at_the_files_values": values_json(&answer.held),
+        "fixed_at_the_files_values": values_json(&answer.held),
         "identify": answer.targets.iter().map(target_json).collect::<Vec<_>>(),
         "is_met": answer.is_met,
         "candidates": answer.candidates,

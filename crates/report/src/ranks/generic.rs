@@ -12,7 +12,7 @@ pub(super) fn finite(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
 }
 
-/// What is said of an unknown.
+/// The verdict on an unknown.
 pub(crate) fn unknown_verdict(kind: UnknownKind, seen: Observability) -> &'static str {
     match (kind, seen) {
         (UnknownKind::Parameter, Observability::Yes) => "locally identifiable",
@@ -106,7 +106,7 @@ pub fn rank_so_far_text(file: &str, branches: &[GenericOnBranch], cut_off: Optio
     out
 }
 
-/// The table of unknowns and then the sentence that it follows from, in words.
+/// The table of unknowns and then the sentence that it follows from, as text.
 pub(super) fn generic_text(generic: &GenericAnswer, unknowns: &Unknowns, out: &mut String) {
     let width = unknowns.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
     for ((name, kind), (_, seen)) in unknowns.iter().zip(&generic.unknowns) {

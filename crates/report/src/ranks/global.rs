@@ -64,7 +64,7 @@ pub fn global_json(answer: &GlobalAnswer) -> Value {
         "file": answer.file,
         "title": answer.title,
         "conditions": answer.conditions,
-        "held_at_the_files_values": values_json(&answer.held),
+        "fixed_at_the_files_values": values_json(&answer.held),
         "known": answer.known,
         "final": answer.is_final(),
         "interrupted": answer.interrupted,
@@ -115,7 +115,7 @@ fn functions_text(found: &IdentifiableFunctions) -> String {
         };
         let _ = writeln!(out, "identifiable functions: one value for given outputs{all}");
     }
-    // a column for the longest of those that leave room for it
+    // a column for the longest of those that fit
     let lengths = found.functions.iter().map(|of_it| of_it.text.chars().count());
     let width = lengths.filter(|length| *length <= WIDEST).max().unwrap_or(0);
     for of_it in &found.functions {

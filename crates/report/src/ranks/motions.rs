@@ -103,7 +103,7 @@ pub(super) fn motions_json(found: &UnobservableDirections) -> Value {
             "error_bound": error_bound(field.log2_error),
         })).collect::<Vec<_>>(),
         "fields_missing": found.fields_missing,
-        "observable": found.seen_names,
+        "observable": found.observable_names,
         "functions": found.functions.iter().map(|function| json!({
             "text": function.text,
             "error_bound": error_bound(function.log2_error),

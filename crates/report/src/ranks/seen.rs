@@ -4,7 +4,7 @@ use crate::layout::{item, prose};
 use crate::names::plain_number;
 use dashu::rational::RBig;
 use palmistry_math::number::{rational_to_f64, round_to_decimal};
-use palmistry_rank::observability::{NamedCoordinate, StateInWords};
+use palmistry_rank::observability::{NamedCoordinate, WrittenState};
 use palmistry_rank::sweep::{LeastObservable, NEARLY_INVISIBLE, StandardDeviations, UnobservableDirection};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -12,8 +12,8 @@ use std::fmt::Write;
 /// Numbers of more characters than these are shown rounded.
 const LONGEST: usize = 12;
 
-/// A state in words: exactly where its numbers are short, angles in radians.
-pub(super) fn place_text(state: &StateInWords) -> String {
+/// A state as text: exactly where its numbers are short, angles in radians.
+pub(super) fn place_text(state: &WrittenState) -> String {
     let coordinate = |NamedCoordinate { name, exact, value }: &NamedCoordinate| match exact.len() <= LONGEST {
         true => format!("{name} = {exact}"),
         // an angle is nought
@@ -73,7 +73,7 @@ pub(super) fn deviations_text(found: &StandardDeviations, out: &mut String) {
     let _ = writeln!(out, "  {:<width$}  {:>10}  {:>12}  {:>12}", "state", "prior", "median", "worst");
     for row in &found.list {
         // of an observable state whose deviation doubles cannot compute it is not said that it is unobservable
-        let infinite = if row.is_seen { "unknown" } else { unobservable(found) };
+        let infinite = if row.is_observable { "unknown" } else { unobservable(found) };
         let deviation = |value: f64| if value.is_finite() { number_text(value) } else { infinite.to_owned() };
         let remark = match (row.infinite, row.median >= NEARLY_INVISIBLE) {
             (0, true) => "  nearly unobservable".to_owned(),
@@ -98,15 +98,15 @@ pub(super) fn deviations_text(found: &StandardDeviations, out: &mut String) {
 
 /// How well the state is observable that is so least.
 pub(crate) fn deviation_text(found: &StandardDeviations, least: &LeastObservable) -> String {
-    let is_seen = found.list.iter().any(|row| row.state == least.state && row.is_seen);
-    match (least.deviation.is_finite(), is_seen) {
+    let is_observable = found.list.iter().any(|row| row.state == least.state && row.is_observable);
+    match (least.deviation.is_finite(), is_observable) {
         (true, _) => number_text(least.deviation),
         (false, true) => "unknown".to_owned(),
         (false, false) => unobservable(found).to_owned(),
     }
 }
 
-/// The word for a state that the Lie derivatives which were taken do not show.
+/// The term for a state that the Lie derivatives which were taken do not determine.
 fn unobservable(found: &StandardDeviations) -> &'static str {
     if found.may_be_finite { "infinite" } else { "unobservable" }
 }
@@ -118,12 +118,12 @@ fn number_text(value: f64) -> String {
     }
 }
 
-/// The same as JSON: `null` where a state is not seen, or where doubles cannot tell how well.
+/// The same as JSON: `null` where a state is unobservable, or where doubles cannot decide how well it is observable.
 pub(super) fn deviations_json(found: &StandardDeviations) -> Value {
     let finite = |value: f64| if value.is_finite() { json!(value) } else { Value::Null };
     json!({
         "states": found.states,
-        "units_of_noise": found.words.iter().map(|(word, unit)| (word.clone(), json!(unit)))
+        "units_of_noise": found.lie_derivatives.iter().map(|(word, unit)| (word.clone(), json!(unit)))
             .collect::<serde_json::Map<_, _>>(),
         "least_observable": found.least.as_ref().map(|least| json!({
             "state": least.state,
@@ -133,11 +133,11 @@ pub(super) fn deviations_json(found: &StandardDeviations) -> Value {
         })),
         "of": found.list.iter().map(|row| json!({
             "state": row.state,
-            "spread": row.spread,
+            "prior_standard_deviation": row.spread,
             "median": finite(row.median),
             "worst": finite(row.worst),
-            "unobservable_at": if row.is_seen { 0 } else { row.infinite },
-            "unknown_at": if row.is_seen { row.infinite } else { 0 },
+            "unobservable_at": if row.is_observable { 0 } else { row.infinite },
+            "unknown_at": if row.is_observable { row.infinite } else { 0 },
             "nearly_invisible": row.median.is_finite() && row.median >= NEARLY_INVISIBLE,
         })).collect::<Vec<_>>(),
     })

@@ -39,7 +39,7 @@ impl TableForm {
     /// By the extension of a file.
     ///
     /// # Errors
-    /// In words: it is another one.
+    /// A message where it is another one.
     pub fn of(path: &Path) -> std::result::Result<TableForm, String> {
         match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
             Some("csv") => Ok(TableForm::CommaSeparated),
@@ -56,7 +56,7 @@ enum Sink<'w> {
     Groups {
         writer: Box<SerializedFileWriter<&'w mut (dyn Write + Send)>>,
         held: Vec<(usize, StateRow)>,
-        /// How many coordinates each row tells.
+        /// How many coordinates each row has.
         coordinates: usize,
     },
 }

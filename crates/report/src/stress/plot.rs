@@ -7,7 +7,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Told apart by all eyes: from blue over yellow to red, greys for what is not said.
+/// Colours that all eyes distinguish: from blue over yellow to red, greys for what is not said.
 fn colour(mark: Option<Mark>) -> RGBColor {
     match mark {
         Some(Mark::Right) => RGBColor(120, 170, 220),
@@ -161,7 +161,7 @@ fn power(exponent: i32) -> String {
     if exponent == 0 { "1".to_owned() } else { format!("1e{exponent}") }
 }
 
-/// Ranks, in words.
+/// Ranks, as text.
 pub(super) fn ranks_text<'a>(ranks: impl Iterator<Item = &'a usize>) -> String {
     ranks.map(ToString::to_string).collect::<Vec<_>>().join(" or ")
 }

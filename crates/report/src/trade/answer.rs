@@ -69,7 +69,7 @@ pub fn trade_json(trade: &Trade) -> Value {
         "fields": fields_json(&trade.fields),
         "drawn_by_default": ranges_json(&trade.by_default),
         "rows_from": trade.rows,
-        "lie_derivatives": trade.words,
+        "lie_derivatives": trade.lie_derivatives,
         "rows": trade.size.0,
         "columns": trade.size.1,
         "varying_entries": trade.varying,
@@ -102,7 +102,7 @@ fn time(seconds: f64) -> String {
     }
 }
 
-/// Digits at the median and at the worst state, in words.
+/// Digits at the median and at the worst state, as text.
 pub(crate) fn digits_text(digits: CorrectDigits) -> (String, String) {
     match digits {
         CorrectDigits::Exact => ("all".to_owned(), "all".to_owned()),
@@ -154,8 +154,8 @@ pub fn trade_text(trade: &Trade) -> String {
         "rows: {}, {} by {}, {} entries vary; {} states of the sample box, seed {}",
         trade.rows, trade.size.0, trade.size.1, trade.varying, trade.states, trade.seed
     );
-    if !trade.words.is_empty() {
-        let _ = writeln!(out, "words: {}", trade.words.join(", "));
+    if !trade.lie_derivatives.is_empty() {
+        let _ = writeln!(out, "Lie derivatives: {}", trade.lie_derivatives.join(", "));
     }
     if trade.without_truth > 0 {
         let _ = writeln!(out, "{} left out: nothing is certain there", counted(trade.without_truth, "state"));

@@ -26,7 +26,7 @@ impl JointScene {
 struct Building<'s> {
     scene: &'s JointScene,
     system: System,
-    /// What is sought.
+    /// The estimated parameters.
     parameters: Vec<SoughtParameter>,
     /// Parameters whose values are known, by the scene or by the file.
     known: Values,
@@ -83,7 +83,7 @@ impl<'s> Building<'s> {
             let node = system.graph.rational(value);
             known.insert(symbol, node);
         }
-        // unknown parameters of the file are among its states, and nothing moves them
+        // unknown parameters of the file are among its states, and have no dynamics
         let moves = |state: &Symbol| {
             system.fields[drift].components.iter().any(|(other, _)| other == state)
                 || scene.initial.contains_key(system.symbol_name(*state))
@@ -119,7 +119,7 @@ impl<'s> Building<'s> {
         }
     }
 
-    /// The value of a formula; what is wrong with it in words, and what to do.
+    /// The value of a formula; as an error, what is wrong with it and what to do, as text.
     fn formula(&mut self, text: &str) -> Result<NodeId, (String, String)> {
         let found = self
             .system
@@ -130,7 +130,7 @@ impl<'s> Building<'s> {
             .ok_or_else(|| (format!("'{text}' is {}, and no number", found.describe()), String::new()))
     }
 
-    /// What is set, of parameters and of states at the start.
+    /// The settings of parameters, and of states at the start.
     fn settings(
         &mut self,
         set: &BTreeMap<String, Formula>,
@@ -157,7 +157,7 @@ impl<'s> Building<'s> {
         Ok((parameters, starts))
     }
 
-    /// A phase: its own settings before what is known everywhere.
+    /// A phase: its own settings take precedence over those known everywhere.
     fn phase(
         &mut self,
         (parameters, starts): &(Values, HashMap<Symbol, NodeId>),
@@ -221,7 +221,7 @@ impl<'s> Building<'s> {
         Ok(Phase { rates, start })
     }
 
-    /// Puts settings and what is known into formulas.
+    /// Puts settings and known values into formulas.
     fn put_in(&mut self, nodes: &[NodeId], settings: &Values) -> Result<Vec<NodeId>, ReadError> {
         let mut all = nodes.to_vec();
         for values in [settings, &self.known] {
@@ -331,7 +331,7 @@ impl<'s> Building<'s> {
         })
     }
 
-    /// What is expected of a row, and the size of its error.
+    /// The expected value of a row, and the size of its error.
     fn measured(
         &mut self,
         row: &MeasuredRow,

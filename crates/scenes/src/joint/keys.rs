@@ -150,7 +150,7 @@ impl Default for SearchKeys {
     }
 }
 
-/// A parameter that is sought, as the scene says it.
+/// An estimated parameter, as the scene states it.
 #[derive(Clone, Debug)]
 pub(super) struct ParameterSettings {
     pub name: String,
@@ -172,7 +172,7 @@ pub struct JointScene {
     pub measurements: PathBuf,
     /// `seed`: where random numbers begin; 1 unless given.
     pub seed: u64,
-    /// `[search] starts`: how many searches begin; 20 unless given, and with 0 nothing is sought.
+    /// `[search] starts`: how many searches begin; 20 unless given, and with 0 nothing is estimated.
     pub starts: usize,
     /// `[search] steps`: how many steps each has at most; 300 unless given.
     pub steps: u64,
@@ -284,7 +284,7 @@ fn checked(keys: Keys, places: &Places<'_>, name: &str, text: &str) -> Result<Jo
                 "give two finite numbers, the lower first",
             );
         }
-        // what can only be positive is sought by its logarithm
+        // a parameter that can only be positive is estimated by its logarithm
         let scale = match own.scale {
             Some(Scale::Linear) => ParameterScale::Linear,
             Some(Scale::Log) => ParameterScale::Log,

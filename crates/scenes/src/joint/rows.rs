@@ -1,21 +1,21 @@
-//! Measurements in rows: experiment, output, time, value, and what is set for the row alone.
+//! Measurements in rows: experiment, output, time, value, and settings for the row alone.
 
 use palmistry_io::foreign::{name_of, shown};
 use palmistry_lang::{Code, Problem, ReadError, load};
 use std::ops::Range;
 use std::path::Path;
 
-/// So many measurements at most.
+/// The most measurements.
 const MOST_ROWS: usize = 1_000_000;
 
 /// A row.
 pub(super) struct MeasuredRow {
     pub experiment: String,
     pub output: String,
-    /// Infinite where it says so: at rest.
+    /// Infinite where the row says so: the steady state.
     pub time: f64,
     pub value: f64,
-    /// `name = value`, apart by semicolons.
+    /// `name = value`, separated by semicolons.
     pub set: String,
     /// Where it stands in the file, in bytes.
     pub place: Range<usize>,

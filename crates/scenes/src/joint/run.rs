@@ -1,4 +1,4 @@
-//! The fit of several experiments, and what its answer is worth.
+//! The fit of several experiments, and how good its answer is.
 
 use super::keys::JointScene;
 use palmistry_fit::{
@@ -10,13 +10,13 @@ use palmistry_observe::exceeded_with;
 use rayon::prelude::*;
 use std::path::Path;
 
-/// A parameter lies at a bound that is nearer to it than this part of the range.
+/// A parameter is at a bound if its distance to it is below this fraction of the range.
 const AT_BOUND: f64 = 1e-6;
 
-/// States and their derivatives at all times of measurement are held at once: so many numbers at most.
+/// States and their derivatives at all times of measurement are kept at once: this many numbers at most.
 const MOST_NUMBERS: usize = 50_000_000;
 
-/// A fit whose residuals are so large by chance less often than this is none.
+/// The significance level of the chi-square test: a fit with a smaller probability is rejected.
 const FALSE_ALARM: f64 = 0.01;
 
 /// How well the best parameters explain the measurements, where the size of the errors is known.
@@ -24,29 +24,29 @@ const FALSE_ALARM: f64 = 0.01;
 pub struct GoodnessOfFit {
     /// The sum of the squares of the residuals over the sizes of their errors.
     pub chi_square: f64,
-    /// Measurements without the directions of the parameters that are told.
+    /// The number of measurements less that of the identifiable directions of the parameters.
     pub degrees: usize,
-    /// How often chance leaves more.
+    /// The probability of a larger chi-square by chance (the p-value).
     pub probability: f64,
 }
 
 impl GoodnessOfFit {
-    /// Whether chance leaves so much often enough.
+    /// Whether it passes the chi-square test.
     pub fn fits(&self) -> bool {
         self.probability >= FALSE_ALARM
     }
 }
 
-/// What is expected at the published values.
+/// The expected measurements at the published values.
 #[derive(Clone, Debug)]
 pub struct NominalAnswer {
     /// The values, on the scales of the parameters.
     pub place: Vec<f64>,
-    /// What they come to, or why nothing.
+    /// The simulated experiments, or why there are none.
     pub simulated: Result<SimulatedExperiments, String>,
 }
 
-/// What all experiments tell together.
+/// The answer of all experiments together.
 #[derive(Debug)]
 pub struct JointAnswer {
     /// At the published values, where all parameters have one.
@@ -55,16 +55,16 @@ pub struct JointAnswer {
     pub fit: Option<Result<JointFit, String>>,
     /// Of each parameter whether its best value lies at a bound.
     pub at_bounds: Vec<bool>,
-    /// What the measurements tell.
+    /// The information of the measurements about the parameters.
     pub information: Option<Information>,
-    /// How well they are explained; none where the size of the errors is sought, or errors are not normal.
+    /// The test of fit; none where the size of the errors is estimated, or errors are not normal.
     pub goodness: Option<GoodnessOfFit>,
     /// Profile likelihoods, where they were asked for.
     pub profiles: Vec<ParameterProfile>,
 }
 
 impl JointAnswer {
-    /// Whether something was found, and nothing speaks against it.
+    /// Whether something was found and no test rejects it.
     pub fn as_expected(&self) -> bool {
         let fits = self.goodness.is_none_or(|own| own.fits());
         match &self.fit {
@@ -123,7 +123,7 @@ impl JointExperiments {
         self.scene.starts + if self.scene.profiles { self.problem().parameters.len() } else { 0 }
     }
 
-    /// Simulates at the published values, searches from all starts, and asks what is told.
+    /// Simulates at the published values, searches from all starts, and determines which parameters are identifiable.
     pub fn run(&self, interrupted: &(dyn Fn() -> bool + Sync), done: &(dyn Fn() + Sync)) -> JointAnswer {
         let nominal = self.problem().nominal().map(|place| {
             let simulated = self
@@ -149,7 +149,7 @@ impl JointExperiments {
             let best = found.best();
             answer.at_bounds = self.at_bounds(&best.found);
             let information = Information::of(&found.simulated, &answer.at_bounds);
-            // where the search came to no end there is something better, and nothing to be tested
+            // without convergence there is a better fit, and nothing to be tested
             if best.end == StartEnd::Converged {
                 let told = information.directions.iter().filter(|one| one.deviation.is_finite()).count();
                 answer.goodness = self.goodness(&found.simulated, told);
@@ -178,7 +178,7 @@ impl JointExperiments {
         self.problem().parameters.iter().zip(found).map(is_at).collect()
     }
 
-    /// A test of fit where so many directions of the parameters are told: what is not told explains nothing.
+    /// A chi-square test where this many directions of the parameters are identifiable: only these reduce the degrees of freedom.
     fn goodness(&self, simulated: &SimulatedExperiments, told: usize) -> Option<GoodnessOfFit> {
         let problem = self.problem();
         let sought: Vec<_> = problem.parameters.iter().map(|one| one.symbol).collect();

@@ -1,4 +1,4 @@
-//! Scenes of several experiments: what is wrong is named where it is, and what is right comes to the numbers of a closed form.
+//! Scenes of several experiments: mistakes are reported at their place, and valid scenes agree with a closed form.
 
 use super::*;
 use palmistry_fit::Exactness;
@@ -130,7 +130,7 @@ fn mistakes_are_named_where_they_are() {
     assert!(experiments(SCENE, &still, ROWS).err().unwrap().message.contains("no drift"));
 }
 
-/// Of two factors that nothing tells apart one number is told: a test of fit counts what is told, and each factor is not determined.
+/// Of two factors only the product is identifiable: the chi-square test counts identifiable directions, and each factor is non-identifiable.
 #[test]
 fn what_is_not_told_explains_nothing() {
     let scene = SCENE

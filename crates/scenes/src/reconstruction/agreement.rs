@@ -1,4 +1,4 @@
-//! All readings at once against what windows make of theirs: both are of one body.
+//! Compares the batch estimate of all measurements with the estimates of the windows: both are of one body.
 
 use super::super::recovered::{Contradiction, WholeMotion, WholeSample};
 use super::super::run::Answer;
@@ -6,19 +6,19 @@ use super::super::simulation::NOMINAL;
 use palmistry_bodies::shape::Measured;
 use palmistry_observe::{Seam, Update};
 
-/// So many deviations are not chance.
+/// A difference of this many standard deviations is not chance.
 const CERTAIN: f64 = 5.0;
 
-/// What interpolation between samples leaves of a value, in parts of the largest over the record: the readings that drive the model are known at samples only.
+/// The interpolation error of a value, relative to its maximum over the record: the measurements that drive the model are known at samples only.
 const COMPUTED: f64 = 1e-7;
 
-/// The same across a kink of the body's curvature, which the torques show: what a motion that leaves nothing of readings without stated noise is not held against.
+/// The same across a kink of the body's curvature, which the torques show: the tolerance for an exact fit of measurements without stated noise.
 const KINKED: f64 = 1e-4;
 
 /// A state of a motion at a sample.
 type OfSample = fn(&WholeSample) -> Measured;
 
-/// Whether each window meets its neighbours: one that is too far from either does not, nor one that meets none where others meet. Which of two is wrong is not known.
+/// Whether each window agrees with its neighbours: not if a seam is open, nor if it has no closed seam where others have one. Which of two is wrong is not known.
 fn are_at_one(updates: &[Update]) -> Vec<bool> {
     let meets = |place: usize| updates.get(place).and_then(|own| own.seam).map(|seam| !seam.is_open());
     let any = (0..updates.len()).any(|place| meets(place) == Some(true));
@@ -29,7 +29,7 @@ fn are_at_one(updates: &[Update]) -> Vec<bool> {
     (0..updates.len()).map(is_at_one).collect()
 }
 
-/// What of a window is farthest from a motion, in deviations of their difference. Both come from the same readings, so that the variance of their difference is no
+/// The state in which a window differs most from a motion, in deviations of their difference. Both come from the same measurements, so that the variance of their difference is no
 /// larger than the sum of theirs.
 fn farthest(names: &[&str], update: &Update, whole: &WholeMotion) -> Option<(f64, Contradiction)> {
     let row = whole.samples.binary_search_by(|sample| sample.time.total_cmp(&update.from));
@@ -51,7 +51,7 @@ fn farthest(names: &[&str], update: &Update, whole: &WholeMotion) -> Option<(f64
     off.max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// What windows that fit and meet their neighbours contradict most of a motion; none where they bear it out.
+/// The largest contradiction between a motion and the windows that fit and agree with their neighbours; none where they bear it out.
 pub(super) fn contradiction(names: &[&str], answer: &Answer, whole: &WholeMotion) -> Option<Contradiction> {
     let updates = &answer.track.updates;
     let windows = updates.iter().zip(are_at_one(updates));
@@ -60,7 +60,7 @@ pub(super) fn contradiction(names: &[&str], answer: &Answer, whole: &WholeMotion
     off.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, found)| found)
 }
 
-/// Windows that fit and are not where the motion is that all readings tell: each met a false minimum. They are held against it as against a neighbour.
+/// Windows that fit but contradict the batch estimate of all measurements: each met a false minimum. They are compared with it as with a neighbour.
 pub(super) fn strays(names: &[&str], answer: &Answer, whole: &WholeMotion) -> Vec<(usize, Seam, String)> {
     let windows = answer.track.updates.iter().enumerate().filter(|(_, update)| update.is_borne_out());
     let stray = windows.filter_map(|(place, update)| {

@@ -1,4 +1,4 @@
-//! A shape and a motion that may be those of a whole record: what is left of the readings, how sure it is, how likely.
+//! A candidate shape and motion of a whole record: its residual, its uncertainty, its evidence.
 
 use super::descent::{Squares, descend, inverse, joined, triangle_of};
 use super::record::{Followed, Unknowns, WholeRecord};
@@ -6,35 +6,35 @@ use nalgebra::{DMatrix, DVector};
 use palmistry_bodies::shape::{ShapeEstimate, SupportFunction, deviation_of};
 use std::sync::atomic::AtomicBool;
 
-/// What a whole record told.
+/// An estimate from a whole record.
 #[derive(Clone)]
 pub(super) struct Found {
     pub unknowns: Unknowns,
-    /// Of the free unknowns, with what the residual adds.
+    /// Of the free unknowns, scaled by the residual.
     pub covariance: DMatrix<f64>,
     pub shape: ShapeEstimate,
     pub motion: Vec<Followed>,
-    /// The root of the mean square of what is left of a contact, in m.
+    /// The root mean square residual of a contact, in m.
     pub rms_residual: f64,
-    /// The logarithm of the probability of the readings, but for a constant of the record.
+    /// The logarithm of the evidence of the measurements, up to a constant of the record.
     pub evidence: f64,
-    /// The radius of gyration, [`CERTAIN`] deviations taken off where it was sought, in m.
+    /// The radius of gyration, less [`CERTAIN`] deviations where it was estimated, in m.
     pub least_gyration: f64,
-    /// Whether its search has come to its end, and errors as large as its own are linear, where it is known how large they are.
+    /// Whether its search has converged, and errors as large as its own are linear, where their size is known.
     pub is_sure: bool,
 }
 
-/// Two shapes that differ by no more than this part of a deviation are one.
+/// Two shapes that differ by no more than this fraction of a deviation are one.
 const SAME: f64 = 0.3;
 
-/// So many descents, each from where the last one stopped, make a search.
+/// A search takes this many descents at most, each from where the last one stopped.
 const MOST_DESCENTS: usize = 20;
 
-/// So many deviations are not chance.
+/// A difference of this many standard deviations is not chance.
 const CERTAIN: f64 = 5.0;
 
 impl Found {
-    /// Whether this leaves more than another one does by more than its fewer unknowns explain: of the true model that is the square of as many normal numbers.
+    /// Whether this chi-square exceeds another one's by more than its fewer unknowns explain: for the true model the excess is chi-square distributed with that many degrees.
     pub fn is_refuted_by(&self, other: &Found) -> bool {
         let fewer = self.shape.degrees.saturating_sub(other.shape.degrees).max(1) as f64;
         self.shape.chi_square > other.shape.chi_square + fewer + CERTAIN * (2.0 * fewer).sqrt()
@@ -46,10 +46,10 @@ impl Found {
         is_between && self.holds_its_mass()
     }
 
-    /// Whether the radius of gyration fits into the outline, [`CERTAIN`] deviations taken off it and added to the perimeter.
+    /// Whether the radius of gyration, less [`CERTAIN`] deviations, fits into the outline, its perimeter increased by as many.
     ///
     /// No two points of a convex outline are farther apart than half its perimeter, by H. Jung's theorem (1901) it lies in a circle of `1/sqrt(3)` of that, and mass within a circle
-    /// has no larger radius of gyration. What was not touched is in the deviation.
+    /// has no larger radius of gyration. The uncertainty of normals that were not touched is in the deviation.
     fn holds_its_mass(&self) -> bool {
         let perimeter = self.shape.perimeter();
         let most = (perimeter.value + CERTAIN * perimeter.deviation) / (2.0 * 3f64.sqrt());
@@ -61,7 +61,7 @@ impl Found {
         matches!(self.unknowns.support, SupportFunction::Spline(_))
     }
 
-    /// Whether another one says the same of the body where it was touched, to a part of this one's deviations.
+    /// Whether another candidate has the same support radii where it was touched, up to a fraction of this one's deviations.
     pub fn is_also(&self, other: &Found) -> bool {
         self.motion.iter().zip(&other.motion).all(|(own, other)| {
             (0..2).all(|palm| {
@@ -72,16 +72,16 @@ impl Found {
     }
 }
 
-/// The best unknowns of some rows.
+/// The best unknowns for some rows.
 #[derive(Clone)]
 pub(super) struct Best {
     pub x: Unknowns,
     pub cost: f64,
-    /// As of [`super::descent::Least`].
+    /// See [`super::descent::Least`].
     pub is_settled: bool,
 }
 
-/// The sum of squares of what is left of the first rows, and of what is known of the coefficients: the roots of their weights about zero.
+/// The sum of squares of the residuals of the first rows and of the prior on the coefficients, given as square roots of weights about zero.
 pub(super) struct Whole<'a> {
     pub record: &'a WholeRecord,
     pub rows: usize,
@@ -117,7 +117,7 @@ impl Whole<'_> {
 }
 
 impl WholeRecord {
-    /// What is left of the contacts, in units of their variance.
+    /// The chi-square of the contacts: squared residuals in units of their variance.
     pub fn squares(&self, motion: &[Followed]) -> f64 {
         let contacts = motion.iter().enumerate().flat_map(|(i, at)| {
             (0..2).map(move |palm| ((at.contacts[palm] - self.contacts[palm][i]) / self.sigma).powi(2))
@@ -125,7 +125,7 @@ impl WholeRecord {
         contacts.sum()
     }
 
-    /// The triangle of the contacts' derivatives by the free unknowns, with what the contacts lack.
+    /// The triangle of the contacts' derivatives by the free unknowns, with the right-hand side (measured minus expected) as the last column.
     pub fn rows(&self, motion: &[Followed]) -> DMatrix<f64> {
         let p = motion.first().map_or(0, |at| at.phi_row.len());
         let mut rows = DMatrix::zeros(2 * motion.len(), p + 1);
@@ -167,7 +167,7 @@ impl WholeRecord {
         })
     }
 
-    /// The same, gone on with until it has come to its end or [`MOST_DESCENTS`] of them were not enough.
+    /// The same, continued until it converges or [`MOST_DESCENTS`] of them were not enough.
     pub fn descend_to_end(&self, start: Unknowns, prior: &[f64], interrupt: &AtomicBool) -> Option<Best> {
         let mut best = self.descend(start, prior, self.times.len(), interrupt)?;
         for _ in 1..MOST_DESCENTS {
@@ -179,18 +179,18 @@ impl WholeRecord {
         Some(best)
     }
 
-    /// The root of the mean square of what is left of a contact, in m, by the sum of its squares.
+    /// The root mean square residual of a contact, in m, from the sum of squares.
     pub fn rms_residual(&self, cost: f64, rows: usize) -> f64 {
         self.sigma * (cost / (2 * rows) as f64).sqrt()
     }
 
-    /// Whether what is left is no more than noise leaves, [`CERTAIN`] deviations of the sum of so many squares added.
+    /// Whether the residual is explained by noise: within [`CERTAIN`] deviations of a sum of so many squares.
     pub fn is_explained(&self, cost: f64, rows: usize) -> bool {
         let n = 2.0 * rows as f64;
         cost <= n + CERTAIN * (2.0 * n).sqrt()
     }
 
-    /// A found minimum with the evidence of P. Laplace's method: what is known of the coefficients beforehand against what is known afterwards.
+    /// A found minimum with its evidence by P. Laplace's method: the prior of the coefficients against the posterior.
     pub fn at_minimum(&self, best: &Best, prior: &[f64]) -> Option<Found> {
         let motion = self.follow(&best.x, self.times.len(), true)?;
         let rows = self.rows(&motion);
@@ -201,7 +201,7 @@ impl WholeRecord {
         Some(self.found(best.x.clone(), (motion, &rows), covariance, evidence))
     }
 
-    /// What is found, with its motion, the triangle of its rows and the covariance of its free unknowns.
+    /// The candidate at some unknowns, from its motion, the triangle of its rows and the covariance of its free unknowns.
     pub fn found(
         &self,
         unknowns: Unknowns,
@@ -211,7 +211,7 @@ impl WholeRecord {
     ) -> Found {
         let chi_square = self.squares(&motion);
         let (n, head, p) = (2 * self.times.len(), self.head(), covariance.nrows());
-        // a coefficient that is known beforehand costs no reading
+        // a coefficient that the prior determines costs no measurement
         let told = rows.columns(0, p);
         let free = (told * &covariance).component_mul(&told).sum().min(p as f64);
         let shape = ShapeEstimate {
@@ -224,19 +224,19 @@ impl WholeRecord {
             widened: 1.0,
         };
         let rms_residual = self.rms_residual(chi_square, self.times.len());
-        // its logarithm is what is sought
+        // its logarithm is the unknown
         let off = self.place_of_gyration().map_or(0.0, |place| covariance[(place, place)].max(0.0).sqrt());
         let least_gyration = unknowns.gyration * (-CERTAIN * off).exp();
         Found { unknowns, covariance, shape, motion, rms_residual, evidence, least_gyration, is_sure: true }
     }
 
-    /// The length by which coefficients are measured beforehand, in m: twice the mean of what was read, from which a body that touches both palms cannot be far.
+    /// The length scale of the prior of the coefficients, in m: twice the mean measured contact, from which a body that touches both palms cannot be far.
     pub fn size(&self) -> f64 {
         let read = || self.contacts.iter().flatten();
         read().map(|s| s.abs()).sum::<f64>() / read().count().max(1) as f64
     }
 
-    /// What is known of a spline's coefficients beforehand: its points lie about the centre of mass, and its steps are of one size.
+    /// The prior of a spline's coefficients: its points lie about the centre of mass, and its steps are of one size.
     pub fn spline_prior(&self, support: &SupportFunction) -> Vec<f64> {
         let points = 2 * support.points().len();
         let weight = 1.0 / (2.0 * self.size());
@@ -244,7 +244,7 @@ impl WholeRecord {
     }
 }
 
-/// By how much more is known afterwards: the logarithm of the ratio of both densities' sizes.
+/// The information gain: the logarithm of the ratio of the prior and posterior volumes.
 pub(super) fn gained(triangle: &DMatrix<f64>, prior: &[f64]) -> f64 {
     let p = triangle.ncols() - 1;
     let afterwards: f64 = (0..p).map(|i| triangle[(i, i)].abs().ln()).sum();

@@ -1,4 +1,4 @@
-//! Levenberg and Marquardt's method with orthogonal factors: what a series leaves undetermined in gaps makes normal equations lose half of all digits.
+//! Levenberg and Marquardt's method with orthogonal factors: coefficients that are undetermined in gaps would cost normal equations half of all digits.
 
 use nalgebra::{DMatrix, DVector};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,13 +7,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const STEPS: usize = 30;
 const TRIES: usize = 9;
 
-/// The damping at first, in parts of the squared sizes of the columns; what a step that helped leaves of it, and what one that did not makes of it.
+/// The initial damping relative to the squared sizes of the columns, its factor after a step that helped, and its factor after one that did not.
 const DAMPING: f64 = 1e-6;
 const CALMER: f64 = 0.01;
 const STRONGER: f64 = 20.0;
 const LEAST_DAMPING: f64 = 1e-20;
 
-/// A step that lowers the sum of squares by less than this, or less than this part of it, is the last one: it moved nothing by a part of its deviation.
+/// A step that lowers the sum of squares by less than this, or by less than this fraction of it, is the last one: it moved nothing by a fraction of its deviation.
 const SETTLED: f64 = 1e-3;
 const SETTLED_PART: f64 = 1e-7;
 
@@ -23,7 +23,7 @@ pub(super) trait Squares {
     type Point: Clone;
     /// The sum there; none where there is none.
     fn sum(&self, at: &Self::Point) -> Option<f64>;
-    /// The triangle of its rows, with what the rows lack as the last column.
+    /// The triangle of its rows, with the right-hand side as the last column.
     fn triangle(&self, at: &Self::Point) -> Option<DMatrix<f64>>;
     fn moved(&self, at: &Self::Point, step: &DVector<f64>) -> Option<Self::Point>;
 }
@@ -38,7 +38,7 @@ pub(super) fn triangle_of(rows: DMatrix<f64>) -> DMatrix<f64> {
     }
 }
 
-/// The rows of a triangle, and below them a diagonal with what it lacks, as a triangle.
+/// The rows of a triangle, and below them a diagonal with its right-hand side, as a triangle.
 pub(super) fn joined(triangle: &DMatrix<f64>, diagonal: &[f64], lacks: &[f64]) -> DMatrix<f64> {
     let (rows, last) = (triangle.nrows(), triangle.ncols() - 1);
     let mut all = DMatrix::zeros(rows + diagonal.len(), last + 1);
@@ -72,11 +72,11 @@ pub(super) fn inverse(triangle: &DMatrix<f64>) -> Option<DMatrix<f64>> {
 pub(super) struct Least<P> {
     pub at: P,
     pub sum: f64,
-    /// No step lowers the sum by what matters: else it was still on its way, as in a long bent valley, and this is no minimum.
+    /// Whether no step lowers the sum significantly: else it was still on its way, as in a long bent valley, and this is no minimum.
     pub is_settled: bool,
 }
 
-/// The least sum that is found from a beginning.
+/// The least sum that is found from a starting point.
 pub(super) fn descend<S: Squares>(
     squares: &S,
     start: S::Point,

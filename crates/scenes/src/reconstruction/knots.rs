@@ -1,7 +1,7 @@
-//! Closed splines through a few points as candidates: bodies whose curvature has kinks, as those of the thesis.
+//! Closed splines through a few points as candidates: bodies whose curvature has kinks, such as those of the thesis.
 //!
-//! A series has to follow each kink by many harmonics; a spline has one at each of its points and needs nothing else. Where the points are is first read off the series, by its radii at the normals that were touched; then
-//! points and steps explain the readings by themselves. A point more begins in the middle of a piece, where it changes nothing.
+//! A series needs many harmonics for each kink; a spline has one at each of its points and needs nothing else. The points are first fitted to the series, by its radii at the normals that were touched; then
+//! points and steps are fitted to the measurements themselves. An additional point starts in the middle of a piece, where it changes nothing.
 
 use super::candidate::{Best, Found};
 use super::descent::{Least, Squares, descend, joined, triangle_of};
@@ -15,20 +15,20 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const FEWEST: usize = 3;
 const MOST: usize = 6;
 
-/// Directions of the first point, in parts of the angle between two.
+/// Directions of the first point, in fractions of the angle between two.
 const TURNS: usize = 8;
 
-/// So many radii of a series are enough for a beginning, and what they are worth in parts of the size of the body.
+/// This many radii of a series are enough for initial values; and their standard deviation relative to the size of the body.
 const RADII: usize = 200;
 const WORTH: f64 = 1e-4;
 
-/// So many beginnings go on to the readings; all of them while none of them settles at what the series bears out.
+/// This many initial values go on to the measurements; all of them while none converges to a fit that the series does not refute.
 const KEPT: usize = 2;
 
-/// Another point is not asked for that has made the readings less likely.
+/// After this many additional points that lowered the evidence no further one is tried.
 const PATIENCE: usize = 1;
 
-/// The squares of what a spline's radii are off.
+/// The squared residuals of a spline's radii.
 struct Radii<'a> {
     radii: &'a [[f64; 2]],
     worth: f64,
@@ -69,20 +69,20 @@ impl Squares for Radii<'_> {
 }
 
 impl WholeRecord {
-    /// The splines that explain the readings, one for each number of points that was tried. `series` is what a series told: where it is enough if it explains the readings, no more points are asked for.
+    /// The splines that explain the measurements, one for each number of points that was tried. `series` is the estimate by a series: if `is_enough` and it explains the measurements, no more points are tried.
     pub fn splines(&self, series: &Found, is_enough: bool, interrupt: &AtomicBool) -> Vec<Found> {
         let radii = self.radii(series);
         let mut found: Vec<Found> = Vec::new();
         let (mut begins, mut idle) = (self.triangles(series, &radii), 0);
         for points in FEWEST..=MOST {
             let nearest = self.nearest(&radii, begins, interrupt);
-            let Some((end, best)) = self.by_readings(series, nearest, interrupt) else { break };
+            let Some((end, best)) = self.by_measurements(series, nearest, interrupt) else { break };
             let (end, best) = match best.is_settled {
                 true => (Some(end), best),
                 false => self.gone_on(best, interrupt),
             };
             begins = with_a_point_more(&best.x.support, points);
-            // what is still on its way has no band: it is no candidate, and no more than a beginning
+            // a search that has not converged has no band: it is no candidate, and only gives initial values
             let Some(end) = end else { continue };
             let before = found.iter().map(|found| found.evidence).fold(f64::NEG_INFINITY, f64::max);
             idle = if end.evidence > before { 0 } else { idle + 1 };
@@ -97,7 +97,7 @@ impl WholeRecord {
         found
     }
 
-    /// Where a search goes on to that had not ended, and what it finds there if that is its end.
+    /// Continues a search that had not converged; the candidate there if it has converged then.
     fn gone_on(&self, best: Best, interrupt: &AtomicBool) -> (Option<Found>, Best) {
         let prior = self.spline_prior(&best.x.support);
         let best = self.descend_to_end(best.x.clone(), &prior, interrupt).unwrap_or(best);
@@ -136,7 +136,7 @@ impl WholeRecord {
         (0..TURNS).filter_map(turned).collect()
     }
 
-    /// The splines nearest to radii, from each beginning: those that are not the same, the best first.
+    /// The splines nearest to radii, from each initial value: those that are not the same, the best first.
     fn nearest(
         &self,
         radii: &[[f64; 2]],
@@ -152,8 +152,8 @@ impl WholeRecord {
         ends.into_iter().map(|end| end.at).collect()
     }
 
-    /// The best spline by the readings themselves, from several beginnings.
-    fn by_readings(
+    /// The best spline by the measurements themselves, from several initial values.
+    fn by_measurements(
         &self,
         series: &Found,
         begins: Vec<SupportFunction>,
@@ -172,7 +172,7 @@ impl WholeRecord {
         best
     }
 
-    /// A spline by the readings themselves.
+    /// A spline by the measurements themselves.
     fn spline(
         &self,
         series: &Found,

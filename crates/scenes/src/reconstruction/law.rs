@@ -1,4 +1,4 @@
-//! A convex body that slides between two flat palms that move as they are read: one degree of freedom, no contact force and no torque in it.
+//! A convex body that slides between two flat palms with measured motion: one degree of freedom, no contact force and no torque in it.
 //!
 //! The palms run through the origin. Palm `i` at the angle `w_i` has the direction `e_i` and the normal `n_i` towards the body, which turns against
 //! `e_i` by a right angle on palm 1 and back by one on palm 2. With the support function `h` about the centre of mass and the body's angle `phi`,
@@ -45,7 +45,7 @@ pub(super) struct Pose<D> {
     pub centre: [D; 2],
 }
 
-/// The pose's consequences from `[h, h', h'']` at both contacts, the body's rate, its radius of gyration, and gravity's acceleration along the Y axis.
+/// The pose and acceleration from `[h, h', h'']` at both contacts, the body's rate, its radius of gyration, and gravity's acceleration along the Y axis.
 pub(super) fn pose<D: DualNum<Primitive = f64> + Copy>(
     palms: &PalmsAt,
     support: &[[D; 3]; 2],

@@ -1,8 +1,8 @@
-//! The shape that an experiment tells: from what an observer believes sample by sample, or batch estimate of all measurements.
+//! The shape estimated from an experiment: from an observer's estimates sample by sample, or as a batch estimate of all measurements.
 //!
-//! Between two flat palms shape and motion follow from one law and all readings (`whole`): that has no window, no pole and no sum of errors, and its
-//! band is that of the readings. Where this does not apply, or does not explain the readings, the shape is made of what the observer shown
-//! believes of the support radii (`track`). Either way it is one estimator's ([`palmistry_bodies::shape`]).
+//! Between two flat palms shape and motion follow from one law and all measurements (`whole`): that has no window, no pole and no sum of errors, and its
+//! band is that of the measurements. Where this does not apply, or does not explain the measurements, the shape is fitted to the support radii
+//! that the shown observer estimates (`track`). Either way the estimator is that of [`palmistry_bodies::shape`].
 
 mod agreement;
 mod candidate;
@@ -35,13 +35,13 @@ use record::WholeRecord;
 use std::sync::atomic::AtomicBool;
 use whole::Told;
 
-/// All readings at once are believed whose residual is below this part of the mean radius, or a few times the noise: else it is another model.
+/// The batch estimate is accepted if its residual is below this fraction of the mean radius, or a few times the noise: else the model is wrong.
 const BELIEVED: f64 = 1e-3;
 const BELIEVED_NOISE: f64 = 5.0;
 
 impl Experiment {
-    /// The shape that the readings tell, with what the answers found as the beginning. None where the model is not one of two palms with the outputs `s1` and `s2` and
-    /// the sought states `r1` and `r2`, or there is no answer.
+    /// The shape estimated from the measurements, with the answers as initial values. None where the model is not one of two palms with the outputs `s1` and `s2` and
+    /// the estimated states `r1` and `r2`, or there is no answer.
     pub fn reconstruct(&self, answers: &[Answer], interrupt: &AtomicBool) -> Option<Reconstruction> {
         let answer = shown(answers)?;
         let track = track::touch_track(self, answer)?;
@@ -68,15 +68,15 @@ impl Experiment {
             Err(found) => apart = found,
         }
         let (shape, coverage) = from_track(&track, !answer.track.updates.is_empty());
-        // of two candidates that contradict each other neither is an answer, whatever windows say of themselves
+        // two estimates that contradict each other are both rejected, whatever the windows' own tests say
         let is_told = contradiction.is_none()
-            && track::no_outline(answer, &track.forms, self.scene.observer.when_blind).is_none();
+            && track::no_outline(answer, &track.forms, self.scene.observer.when_unobservable).is_none();
         let (shape, too_wide) =
             shape.filter(|_| is_told).map_or((None, None), |shape| resolved(shape, true, &coverage));
         Some(Reconstruction { track, shape, coverage, whole: None, contradiction, too_wide, apart })
     }
 
-    /// What every observer makes of the readings, as [`Experiment::run`], and the shape that they tell, which stands with the answer that
+    /// The answers of all observers, as [`Experiment::run`], and the shape estimated from them, which is stored with the answer that
     /// is shown.
     ///
     /// # Errors
@@ -98,7 +98,8 @@ impl Experiment {
                     answer.track.updates[place].seam = Some(seam);
                     answer.track.remarks.push(why);
                 }
-                let why = track::no_outline(answer, &found.track.forms, self.scene.observer.when_blind);
+                let why =
+                    track::no_outline(answer, &found.track.forms, self.scene.observer.when_unobservable);
                 answer.track.remarks.extend(why.filter(|_| found.whole.is_none()));
                 answer.reconstruction = Some(Box::new(found));
             }
@@ -106,13 +107,13 @@ impl Experiment {
         Ok(answers)
     }
 
-    /// What an answer says of the outline sample by sample; none where [`Experiment::reconstruct`] has none.
+    /// The outline by one answer, sample by sample; none where [`Experiment::reconstruct`] has none.
     #[doc(hidden)]
     pub fn touch_track(&self, answer: &Answer) -> Option<TouchTrack> {
         track::touch_track(self, answer)
     }
 
-    /// Shape and motion batch estimate of all measurements, where the palms are flat and a body between them explains the readings; else what is known of why not.
+    /// Shape and motion as a batch estimate of all measurements, where the palms are flat and a body between them explains the measurements; else the reason, where it is known.
     fn whole_record(
         &self,
         track: &TouchTrack,
@@ -137,10 +138,10 @@ impl Experiment {
     }
 }
 
-/// Normals at which a band is looked at.
+/// Normals at which the width of a band is checked.
 const NORMALS: u32 = 360;
 
-/// A shape, unless its search has not ended or its errors are not linear, or its band is somewhere wider than its mean radius where it was touched: no linear model reaches so far, and neither does its band.
+/// A shape, unless its search has not converged, its errors are not linear, or its band is somewhere wider than its mean radius where it was touched: no linear model holds so far, and neither does its band.
 fn resolved(
     shape: ShapeEstimate,
     is_sure: bool,
@@ -166,13 +167,13 @@ fn coverage(record: &WholeRecord, found: &Found) -> Coverage {
     Coverage::of_paths(paths.iter().map(Vec::as_slice))
 }
 
-/// The shape by what an observer believes of the radii. Samples of a window share their errors and count as one; where there are no windows, errors are taken for independent.
+/// The shape fitted to the radii of an observer. Samples of a window share their errors and count as one; where there are no windows, errors are taken for independent.
 fn from_track(track: &TouchTrack, by_windows: bool) -> (Option<ShapeEstimate>, Coverage) {
     let samples: Vec<SupportSample> = track.instants.iter().flat_map(|at| at.samples).collect();
     let weights = if by_windows { SupportWeights::InverseVariances } else { SupportWeights::Relative };
     let shape = fit_support(&samples, weights, None);
     // a path ends where the body was lost
-    let runs = track.instants.split(|at| !at.seen);
+    let runs = track.instants.split(|at| !at.is_observed);
     let paths: Vec<Vec<f64>> = runs
         .flat_map(|run| [0, 1].map(|palm| run.iter().map(|at| at.samples[palm].angle).collect()))
         .collect();

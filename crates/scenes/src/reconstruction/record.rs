@@ -1,4 +1,4 @@
-//! What a whole record tells of a body between flat palms: the readings of both contacts, the palms as they move, and what follows from a shape.
+//! A whole record of a body between flat palms: the measurements of both contacts, the palms' motion, and the motion that follows from a shape.
 
 use super::super::recovered::Apart;
 use super::law::{PalmsAt, Pose, pose};
@@ -20,11 +20,11 @@ pub(super) fn node(from: f64, to: f64, place: usize) -> f64 {
 pub(super) struct WholeRecord {
     /// In s.
     pub times: Vec<f64>,
-    /// What was read along the palms.
+    /// The measured contacts along the palms.
     pub contacts: [Vec<f64>; 2],
     /// The palms' angles, rates and accelerations in the world, two columns each, over the same times.
     pub palms: Signals,
-    /// The palms at the times that a step from one sample to the next asks for, by the bits of the time: every motion that is tried asks for the same ones.
+    /// The palms at the times at which a step from one sample to the next needs them, by the bits of the time: every motion that is tried needs the same ones.
     pub known: HashMap<u64, PalmsAt>,
     /// The acceleration along the Y axis.
     pub gravity: f64,
@@ -39,7 +39,7 @@ pub(super) struct WholeRecord {
     pub phi: f64,
 }
 
-/// What is sought of a whole record: a point from which everything follows.
+/// The unknowns of a whole record: a point from which everything follows.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Unknowns {
     /// The body's rate at the first sample, in rad/s.
@@ -50,8 +50,8 @@ pub(super) struct Unknowns {
     pub support: SupportFunction,
 }
 
-/// One sample of a motion that follows from unknowns. Rows are derivatives by the free unknowns: where they are free the rate and the logarithm of the radius of
-/// gyration, and the coefficients.
+/// One sample of a motion that follows from unknowns. Rows are derivatives by the free unknowns: the rate and the logarithm of the radius of
+/// gyration where they are free, and the coefficients.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Followed {
     pub phi: f64,
@@ -73,7 +73,7 @@ pub(super) struct Touched {
     pub bases: [Vec<[f64; 4]>; 2],
 }
 
-/// A pose with all that its derivatives are made of.
+/// A pose with everything that its derivatives are computed from.
 pub(super) struct Local {
     pub pose: Pose<DualSVec64<INPUTS>>,
     pub touched: Touched,
@@ -103,7 +103,7 @@ impl WholeRecord {
         self.known.get(&time.to_bits()).copied().unwrap_or_else(|| self.interpolated(time))
     }
 
-    /// Fills what is known of the palms: at each sample, and where a step from it to the next asks.
+    /// Tabulates the palms: at each sample, and where a step from it to the next needs them.
     pub fn know_palms(&mut self) {
         let asked = self.times.windows(2).flat_map(|pair| {
             let [from, to] = [pair[0], pair[1]];
@@ -144,7 +144,7 @@ impl WholeRecord {
         Local { pose, touched }
     }
 
-    /// The derivatives of the body's acceleration by its angle and its rate, and by the free unknowns where these two are held.
+    /// The derivatives of the body's acceleration by its angle and its rate, and by the free unknowns where these two are fixed.
     pub fn linear(&self, time: f64, [phi, rate]: [f64; 2], x: &Unknowns) -> ([f64; 2], Vec<f64>) {
         let local = self.local(time, phi, rate, x);
         let by = parts(&local.pose.acceleration);
@@ -180,7 +180,7 @@ impl WholeRecord {
         row
     }
 
-    /// How far the samples are apart, and what a body of such a size needs to move.
+    /// The time between samples, and the time scale on which a body of such a size moves.
     pub fn apart(&self, x: &Unknowns) -> Apart {
         let whole = self.times.last().zip(self.times.first()).map_or(0.0, |(last, first)| last - first);
         let between = whole / (self.times.len().max(2) - 1) as f64;

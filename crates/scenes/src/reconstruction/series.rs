@@ -1,7 +1,7 @@
-//! Fourier polynomials of all orders at once: which harmonics there are is not known, and what is not known about them is in the band.
+//! Fourier polynomials of all orders at once: which harmonics there are is unknown, and the uncertainty about them is in the band.
 //!
-//! A truncated series leaves what its harmonics cannot follow, and says nothing about it. So each order is taken with several beliefs on how fast harmonics fall, `part (k/2)^-decay` in parts of the size of the body and
-//! never more than convexity allows; each is weighed by the probability that it gives to the readings, and the shape is the mean of all, with the covariance of the mixture. About one
+//! A truncated series ignores what its harmonics cannot follow, without any sign of it. So each order is taken with several priors on how fast harmonics fall, `part (k/2)^-decay` relative to the size of the body and
+//! never more than convexity allows; each is weighted by its evidence, and the shape is the mean of all, with the covariance of the mixture. About one
 //! point, where all is linear, a triangle of the largest order's rows has all others in its corners.
 
 use super::candidate::{Found, Whole, gained};
@@ -11,29 +11,29 @@ use nalgebra::{DMatrix, DVector};
 use palmistry_bodies::shape::{SupportFunction, SupportSeries};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Orders that are weighed, and with how many of them it begins; more are asked where the last one has more than a part of the weight.
+/// Orders that are weighted, and how many of them it begins with; more are tried where the last one has more than this fraction of the weight.
 const ORDERS: [usize; 16] = [1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 16, 20, 24, 32, 40, 48];
 const FIRST: usize = 13;
 const MORE: f64 = 1e-3;
 
-/// Harmonics as parts of the size of the body, and how fast they fall.
+/// Harmonics relative to the size of the body, and how fast they fall.
 const PARTS: [f64; 5] = [1.0, 0.3, 0.1, 0.03, 0.01];
 const DECAYS: [f64; 5] = [2.0, 3.0, 4.0, 6.0, 9.0];
 
-/// The harmonics with which a search begins that is about more than one motion.
+/// The number of harmonics of a search that starts from several motions.
 const BEGUN: usize = 6;
 
-/// Beliefs that are this much less likely than the likeliest are left out.
+/// Priors whose weight is below this fraction of the largest are left out.
 const UNLIKELY: f64 = 1e-6;
 
-/// All is linear about a point so near to the mean that what is left does not change by more than this.
+/// The problem is linearised about a point whose contacts differ from those of the mean by less than this, squared and in units of their variance.
 const NEAR: f64 = 0.05;
 
-/// Where the mean of all beliefs leaves other contacts than the point by more than this, five deviations squared, errors are not linear and their covariance is none. Where nobody states a deviation its size is not known well enough to ask.
+/// Where the contacts of the mean and of the point differ by more than this, five deviations squared, errors are not linear and the covariance is invalid. Where no deviation is stated its size is not known well enough to test.
 const LINEAR: f64 = 25.0;
 const ROUNDS: usize = 5;
 
-/// What is believed of the harmonics beforehand.
+/// A prior of the harmonics.
 #[derive(Clone, Copy)]
 struct Belief {
     order: usize,
@@ -42,7 +42,7 @@ struct Belief {
 }
 
 impl Belief {
-    /// The roots of the weights of the coefficients about zero, of a body of a size in m.
+    /// The square roots of the weights of the coefficients about zero, of a body of a size in m.
     fn weights(self, size: f64) -> Vec<f64> {
         let deviation = |k: usize| match k {
             0 => 2.0 * size,
@@ -57,7 +57,7 @@ impl Belief {
     }
 }
 
-/// What convexity says of the coefficients of a body of a size in m: the roots of their weights.
+/// The prior of the coefficients from convexity, for a body of a size in m: the square roots of their weights.
 pub(super) fn convex_weights(size: f64, order: usize) -> Vec<f64> {
     Belief { order, part: 1.0, decay: 2.0 }.weights(size)
 }
@@ -70,7 +70,7 @@ fn beliefs(orders: &[usize]) -> Vec<Belief> {
     orders.iter().flat_map(of).collect()
 }
 
-/// What one belief makes of the readings, about a point.
+/// The estimate under one prior, about a point.
 struct Told {
     belief: Belief,
     evidence: f64,
@@ -79,18 +79,18 @@ struct Told {
     inverse: DMatrix<f64>,
 }
 
-/// All beliefs together.
+/// The mixture over all priors.
 struct Mixture {
     value: DVector<f64>,
     covariance: DMatrix<f64>,
     evidence: f64,
     likeliest: Belief,
-    /// The part of the weight that the largest orders have.
+    /// The fraction of the weight that the largest orders have.
     last: f64,
 }
 
 impl WholeRecord {
-    /// The series that the readings tell, from a point near it; none where nothing can be followed, or it was interrupted.
+    /// The series estimated from the measurements, from a point near it; none where nothing can be followed, or it was interrupted.
     pub fn series(&self, start: &Unknowns, interrupt: &AtomicBool) -> Option<Found> {
         let order = *self.orders()[..self.asked()].last()?;
         let first = Belief { order, part: 1.0, decay: 3.0 }.weights(self.size());
@@ -99,7 +99,7 @@ impl WholeRecord {
         Some(Found { is_sure: found.is_sure && begin.is_settled, ..found })
     }
 
-    /// What each of a few beliefs makes of the readings, with the harmonics that a beginning has at most.
+    /// The estimates under each of a few priors, with the harmonics that an initial value has at most.
     pub fn believed(&self, begin: &Unknowns, interrupt: &AtomicBool) -> Vec<Found> {
         let one = |part: f64| {
             let weights = Belief { order: BEGUN, part, decay: 3.0 }.weights(self.size());
@@ -109,7 +109,7 @@ impl WholeRecord {
         PARTS.into_iter().filter_map(one).collect()
     }
 
-    /// No more harmonics than these are asked first: what needs more may have no last one.
+    /// The largest order that is tried first: a body that needs more may need infinitely many.
     pub const ORDER_OF_SMOOTH: usize = ORDERS[FIRST - 1];
 
     fn orders(&self) -> Vec<usize> {
@@ -117,12 +117,12 @@ impl WholeRecord {
         ORDERS.into_iter().filter(|order| *order <= most).collect()
     }
 
-    /// So many of the orders are asked first.
+    /// The number of orders that are tried first.
     fn asked(&self) -> usize {
         FIRST.min(self.orders().len())
     }
 
-    /// The series that the readings tell about a point where a search ended.
+    /// The series estimated from the measurements about a point where a search ended.
     pub fn series_about(&self, start: &Unknowns, interrupt: &AtomicBool) -> Option<Found> {
         let orders = self.orders();
         let mut asked = self.asked();
@@ -142,7 +142,7 @@ impl WholeRecord {
         let (order, rows) = (*orders.last()?, self.times.len());
         let mut x = expanded(start, order);
         let mut round = 0;
-        // whether the last descent led anywhere, and has come to its end
+        // whether the last descent led anywhere, and has converged
         let (mut is_moving, mut is_settled) = (true, true);
         loop {
             if interrupt.load(Ordering::Relaxed) {
@@ -157,7 +157,7 @@ impl WholeRecord {
             let moved = there.as_ref().map_or(f64::INFINITY, |there| self.apart_in_contacts(&motion, there));
             round += 1;
             if moved <= NEAR || round == ROUNDS || !is_moving {
-                // a mean that cannot be followed, or explains less than the point itself, is one of what is not linear
+                // a mean that cannot be followed, or explains less than the point itself, is a sign of nonlinearity
                 let most = self.squares(&motion) + moved.sqrt() + 1.0;
                 let (at, motion) = match there.filter(|there| self.squares(there) <= most) {
                     Some(there) => (mean, there),
@@ -167,7 +167,7 @@ impl WholeRecord {
                 let found = Found { is_sure: is_settled && (moved <= LINEAR || !self.stated), ..found };
                 return Some((found, mixture.last));
             }
-            // what is linear about one point may not be about another: the likeliest belief goes there by itself, from the mean or, where that explains less, from the point
+            // a linearisation about one point may not hold at another: the likeliest prior is minimised from the mean or, where that explains less, from the point
             let weights = mixture.likeliest.weights(self.size());
             let whole = Whole { record: self, rows, prior: &weights };
             let begins = [&mean, &x].map(|begin| expanded(begin, mixture.likeliest.order));
@@ -183,7 +183,7 @@ impl WholeRecord {
         }
     }
 
-    /// How far two motions' contacts are apart, in units of their variance.
+    /// The squared distance of two motions' contacts, in units of their variance.
     fn apart_in_contacts(&self, one: &[Followed], other: &[Followed]) -> f64 {
         let pairs =
             one.iter().zip(other).flat_map(|(a, b)| [0, 1].map(|i: usize| a.contacts[i] - b.contacts[i]));
@@ -211,7 +211,7 @@ impl WholeRecord {
         self.moved(x, &step)
     }
 
-    /// What one belief makes of a triangle.
+    /// The estimate under one prior, from a triangle.
     fn told(&self, triangle: &DMatrix<f64>, belief: Belief) -> Option<Told> {
         let (last, head) = (triangle.ncols() - 1, self.head());
         let p = head + 1 + 2 * belief.order;
@@ -221,7 +221,7 @@ impl WholeRecord {
         for i in 0..p {
             corner[(i, p)] = triangle[(i, last)];
         }
-        // what no coefficient of this order changes
+        // the residual that no coefficient of this order changes
         corner[(p, p)] = triangle.view((p, last), (triangle.nrows() - p, 1)).norm();
         let all = joined(&corner, &weights, &vec![0.0; weights.len()]);
         let cost = all[(p, p)].powi(2);
@@ -230,7 +230,7 @@ impl WholeRecord {
         evidence.is_finite().then_some(Told { belief, evidence, value, inverse })
     }
 
-    /// All beliefs, each with its weight.
+    /// The mixture of all priors, each with its weight.
     fn weigh(&self, triangle: &DMatrix<f64>, orders: &[usize]) -> Option<Mixture> {
         let all: Vec<Told> =
             beliefs(orders).into_iter().filter_map(|belief| self.told(triangle, belief)).collect();
@@ -262,7 +262,7 @@ impl WholeRecord {
         Some(Mixture {
             value,
             covariance,
-            // each belief is as likely beforehand
+            // all priors are equally likely
             evidence: best.evidence + (total / all.len() as f64).ln(),
             likeliest: best.belief,
             last: last / total,
@@ -270,7 +270,7 @@ impl WholeRecord {
     }
 }
 
-/// The unknowns with a series of an order: what is beyond it is left out, what is not there is zero.
+/// The unknowns with a series of an order: coefficients beyond it are dropped, missing ones are zero.
 pub(super) fn expanded(x: &Unknowns, order: usize) -> Unknowns {
     let mut coefficients = x.support.coefficients();
     coefficients.resize(1 + 2 * order, 0.0);

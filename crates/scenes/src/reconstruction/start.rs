@@ -1,4 +1,4 @@
-//! Where the search for shape and motion of a whole record begins.
+//! Initial values of the search for shape and motion of a whole record.
 
 use super::super::recovered::TouchTrack;
 use super::super::run::Experiment;
@@ -8,46 +8,46 @@ use super::record::{Unknowns, WholeRecord};
 use palmistry_bodies::shape::{SupportSample, SupportSeries, SupportWeights, fit_support};
 use std::collections::HashMap;
 
-/// A record that so many samples make is not thinned out.
+/// A record of up to this many samples is not thinned out.
 const MOST_SAMPLES: usize = 4000;
 
-/// Fewer samples than these are no record.
+/// The fewest samples of a record.
 const FEWEST_SAMPLES: usize = 24;
 
-/// The highest order of the shape at the beginning.
+/// The order of the shape in initial values.
 const ORDER: usize = 6;
 
-/// The order to which a disc is let go.
+/// The order to which a disc is optimised.
 const DISC_ORDER: usize = 3;
 
 /// Rates on the grid, and the fastest of them in units of `sqrt(g/R)`.
 const RATES: u32 = 40;
 const FASTEST: f64 = 2.0;
 
-/// A body that is a little longer than wide has this part of its mean radius as its second harmonic; so many rates of the grid are one of the few.
+/// The second harmonic of a slightly elongated body, relative to its mean radius; and the stride by which a few rates of the grid are taken.
 const LONGER: f64 = 0.1;
 const FEW_RATES: usize = 10;
 
 impl WholeRecord {
-    /// The readings of an experiment between flat palms; none where one of them is missing. `sigma` is the standard deviation of a contact.
+    /// The measurements of an experiment between flat palms; none where one of them is missing. `sigma` is the standard deviation of a contact.
     pub fn of(experiment: &Experiment, sigma: f64) -> Option<WholeRecord> {
-        let readings = readings(experiment)?;
-        let stride = readings.times.len().div_ceil(MOST_SAMPLES).max(1);
+        let measurements = measurements(experiment)?;
+        let stride = measurements.times.len().div_ceil(MOST_SAMPLES).max(1);
         let thin = |column: &[f64]| column.iter().step_by(stride).copied().collect::<Vec<f64>>();
         let names = ["a1", "a2", "w1", "w2", "b1", "b2"];
-        let columns = [&readings.angles, &readings.rates, &readings.accelerations];
+        let columns = [&measurements.angles, &measurements.rates, &measurements.accelerations];
         // palms are known at all times, also between the samples that are compared
         let columns = names.iter().zip(columns.into_iter().flatten());
         let columns = columns.map(|(name, column)| ((*name).to_owned(), column.clone())).collect();
-        let palms = palmistry_observe::Signals::new(readings.times.clone(), columns).ok()?;
+        let palms = palmistry_observe::Signals::new(measurements.times.clone(), columns).ok()?;
         let truth = experiment.simulation.as_ref().and_then(|s| s.trajectory.moments.first());
         let mut record = WholeRecord {
-            times: thin(&readings.times),
-            contacts: [thin(&readings.contacts[0]), thin(&readings.contacts[1])],
+            times: thin(&measurements.times),
+            contacts: [thin(&measurements.contacts[0]), thin(&measurements.contacts[1])],
             palms,
             known: HashMap::new(),
-            gravity: readings.gravity,
-            gyration: readings.gyration,
+            gravity: measurements.gravity,
+            gyration: measurements.gyration,
             rate: known_rate(experiment),
             sigma,
             stated: sigma > 0.0,
@@ -57,7 +57,7 @@ impl WholeRecord {
         (record.times.len() >= FEWEST_SAMPLES).then_some(record)
     }
 
-    /// Beginnings: what an observer recovered, and what windows tell that are sought without a first guess.
+    /// Initial values: the observer's estimate, and estimates by windows without a first guess.
     pub fn starts(&self, experiment: &Experiment, track: &TouchTrack) -> Vec<Unknowns> {
         let names = experiment.names();
         let sought = names.iter().position(|name| *name == "rho");
@@ -70,7 +70,9 @@ impl WholeRecord {
             .map(|(second, first)| (second.orientation - first.orientation) / (second.time - first.time));
         let guess = sought.and_then(|place| experiment.question.guess.get(place)).map(|(_, value)| *value);
         starts.extend(self.start(&samples, rate, guess));
-        if let Some(windows) = readings(experiment).map(|readings| self.by_windows(&readings, experiment)) {
+        if let Some(windows) =
+            measurements(experiment).map(|measurements| self.by_windows(&measurements, experiment))
+        {
             starts.extend(self.start(&windows.samples, windows.rate, windows.gyration));
         }
         starts
@@ -82,7 +84,7 @@ impl WholeRecord {
         FASTEST * (self.gravity.abs() / radius).sqrt() + palms[0].abs().max(palms[1].abs())
     }
 
-    /// Discs that turn at rates on a grid, where nobody knows anything: a disc between palms touches both at `R/tan(a/2)`, `a` being the angle between them, and bodies
+    /// Discs that turn at rates on a grid, for use without any estimate: a disc between palms touches both at `R/tan(a/2)`, `a` being the angle between them, and bodies
     /// that gravity turns have rates of the size of `sqrt(g/R)`.
     pub fn discs(&self) -> Vec<Unknowns> {
         let radii = self.times.iter().enumerate().map(|(i, time)| {
@@ -103,7 +105,7 @@ impl WholeRecord {
         rates.into_iter().map(disc).collect()
     }
 
-    /// A few bodies that are a little longer than wide and turn at rates on the grid: by these it is seen whether samples are near enough to each other. No force turns a disc, whatever the time between them.
+    /// A few slightly elongated bodies that turn at rates on the grid, for checking whether samples are near enough to each other. No force turns a disc, whatever the time between them.
     pub fn nearly_round(&self) -> Vec<Unknowns> {
         let longer = |mut disc: Unknowns| {
             let mean = disc.support.mean();
@@ -121,21 +123,21 @@ impl WholeRecord {
             _ => fit_support(samples, SupportWeights::Relative, Some(ORDER))?,
         };
         let rate = rate.filter(|rate| rate.is_finite())?;
-        // a disc's, where nobody knows
+        // a disc's, where it is unknown
         let gyration =
             gyration.filter(|gyration| *gyration > 0.0).unwrap_or(shape.support.mean() / 2f64.sqrt());
         Some(self.unknowns(&shape, rate, gyration))
     }
 
-    /// Windows one after the other, each sought without a first guess, and the integrals of the readings within.
-    fn by_windows(&self, readings: &PalmMeasurements, experiment: &Experiment) -> Windows {
+    /// Windows one after the other, each estimated without a first guess, and the integrals of the measurements within.
+    fn by_windows(&self, measurements: &PalmMeasurements, experiment: &Experiment) -> Windows {
         let mut found = Windows { samples: Vec::new(), rate: None, gyration: None };
         let length = experiment.scene.observer.window.max(FEWEST_SAMPLES);
         let (mut phi, mut gyrations) = (self.phi, Vec::new());
         let mut row = 0;
-        while row + FEWEST_SAMPLES / 2 < readings.times.len() {
-            let rows = row..(row + length + 1).min(readings.times.len());
-            let window = readings.rows(rows.clone());
+        while row + FEWEST_SAMPLES / 2 < measurements.times.len() {
+            let rows = row..(row + length + 1).min(measurements.times.len());
+            let window = measurements.rows(rows.clone());
             let Some(motion) = window.first_state().and_then(|first| {
                 gyrations.push(first.gyration);
                 window.motion(&first)
@@ -163,7 +165,7 @@ impl WholeRecord {
         found
     }
 
-    /// The integral of a rate by the trapezoidal rule: a beginning needs no better one.
+    /// The integral of a rate by the trapezoidal rule, which is accurate enough for an initial value.
     fn turned(&self, times: &[f64], rates: &[f64]) -> Vec<f64> {
         let mut sum = 0.0;
         let steps = times.windows(2).zip(rates.windows(2)).map(|(time, rate)| {
@@ -174,14 +176,14 @@ impl WholeRecord {
     }
 }
 
-/// What windows told.
+/// The estimates of the windows.
 struct Windows {
     samples: Vec<SupportSample>,
     rate: Option<f64>,
     gyration: Option<f64>,
 }
 
-/// The rate at the first sample, where the scene says that the observers may not change it.
+/// The rate at the first sample, where the scene fixes it for the observers.
 fn known_rate(experiment: &Experiment) -> Option<f64> {
     let question = &experiment.question;
     if !question.clamped.iter().any(|name| name == "omega0") {
@@ -190,7 +192,7 @@ fn known_rate(experiment: &Experiment) -> Option<f64> {
     question.guess.iter().find(|(name, _)| name == "omega0").map(|(_, value)| *value)
 }
 
-fn readings(experiment: &Experiment) -> Option<PalmMeasurements> {
+fn measurements(experiment: &Experiment) -> Option<PalmMeasurements> {
     let rows = experiment.signals.times().len();
     let (scene, known) = (&experiment.scene, &experiment.question.known);
     palm_measurements(scene, &experiment.system, known, &experiment.signals, rows).ok()

@@ -1,8 +1,8 @@
 //! The motion from one sample to the next, with its derivatives by the unknowns.
 //!
 //! The pair of J. R. Dormand and P. J. Prince of orders 5 and 4 (1980): where both differ the span is halved, as it has to be where the curvature of the body has a kink. The derivatives obey linear
-//! equations that are the same for all unknowns but for what drives them: these are carried by two solutions and Simpson's rule, for hundreds of unknowns at the cost of a few. They are good to a millionth, which a search
-//! needs and a bound; the motion itself is good to the tolerance.
+//! equations that are the same for all unknowns except for their inhomogeneity: these are carried by two solutions and Simpson's rule, for hundreds of unknowns at the cost of a few. They are accurate to a millionth, enough for a search
+//! and for its bound; the motion itself is accurate to the tolerance.
 
 use super::record::{Followed, INPUTS, Unknowns, WholeRecord, node, parts};
 use palmistry_observe::dormand_prince::{DIFFERENCE, STAGES, between};
@@ -32,14 +32,14 @@ struct Moving {
     at: [f64; 2],
     rates: [f64; 2],
     slopes: [Vec<f64>; 2],
-    /// What is linear about the motion there, where a step before has asked.
+    /// The linearisation of the motion there, where an earlier step has computed it.
     linear: Option<Linear>,
 }
 
 /// The derivatives of the acceleration by angle and rate, and by the free unknowns.
 type Linear = ([f64; 2], Vec<f64>);
 
-/// A span that was passed: what is in its middle and at its end, the rates there, and by how much both formulas differ.
+/// A span that was passed: the states in its middle and at its end, the rates there, and the difference of both formulas.
 struct Passed {
     middle: [f64; 2],
     end: [f64; 2],
@@ -55,7 +55,7 @@ impl WholeRecord {
         self.followed(x, rows, derivatives).ok()
     }
 
-    /// Whether so much happens between samples that a motion is not followed: as where their times are in another unit.
+    /// Whether too many steps are needed between samples to follow the motion: as where their times are in another unit.
     pub fn takes_too_many_steps(&self, x: &Unknowns) -> bool {
         self.followed(x, self.times.len(), false) == Err(Unfollowed::Steps)
     }
@@ -164,7 +164,7 @@ impl WholeRecord {
     }
 }
 
-/// The derivatives at the end of a span, by what is linear about the motion at its beginning, middle and end.
+/// The derivatives at the end of a span, by the linearised motion at its start, middle and end.
 fn carried(step: f64, locals: [&Linear; 3], slopes: &[Vec<f64>; 2]) -> [Vec<f64>; 2] {
     let linear = locals.map(|local| local.0);
     let [all, second] = [over(step, linear), over(step / 2.0, halves(linear))];
@@ -181,12 +181,12 @@ fn carried(step: f64, locals: [&Linear; 3], slopes: &[Vec<f64>; 2]) -> [Vec<f64>
     carried
 }
 
-/// Of three linear laws over a span those of its second half: the one in the middle of it is between.
+/// Of three linear laws over a span those of its second half: the one in its middle is interpolated.
 fn halves([_, middle, end]: [[f64; 2]; 3]) -> [[f64; 2]; 3] {
     [middle, [0, 1].map(|i: usize| f64::midpoint(middle[i], end[i])), end]
 }
 
-/// What angle and rate become over a span of `angle'' = by_angle angle + by_rate rate`, the law being told at its beginning, middle and end: Kutta's method.
+/// The state transition matrix of `angle'' = by_angle angle + by_rate rate` over a span, the coefficients being given at its start, middle and end: Kutta's method.
 fn over(step: f64, laws: [[f64; 2]; 3]) -> Matrix {
     let from = |start: [f64; 2]| {
         let rates = |law: [f64; 2], at: [f64; 2]| [at[1], law[0] * at[0] + law[1] * at[1]];

@@ -12,8 +12,8 @@ const ANGLE: &str = "angle";
 const NORMALS: usize = 720;
 
 impl Reconstruction {
-    /// The outline, a row a normal: its `angle` (rad, in the body's frame), the support radius `r`, `band` (two standard deviations where it was touched, in a gap what convexity leaves, infinite in one of half a turn and more), the point `x`, `y` of the outline in the
-    /// frame of the body, its `radius_of_curvature`, and whether the normal was `touched` (1 or 0). SI units. None where nothing was seen.
+    /// The outline, a row a normal: its `angle` (rad, in the body's frame), the support radius `r`, `band` (two standard deviations where it was touched; in a gap the width that convexity leaves, infinite in one of half a turn and more), the point `x`, `y` of the outline in the
+    /// frame of the body, its `radius_of_curvature`, and whether the normal was `touched` (1 or 0). SI units. None where no shape was estimated.
     pub fn outline_table(&self) -> Option<Result<Record, RecordError>> {
         let shape = self.shape.as_ref()?;
         let angles: Vec<f64> = (0..NORMALS).map(|i| TAU * i as f64 / NORMALS as f64).collect();
@@ -33,8 +33,8 @@ impl Reconstruction {
 }
 
 impl Experiment {
-    /// What was believed sample by sample: each sought state of an answer with its bound (`r1`, `r1_bound`, ...), whether the body was `seen` (1 or 0), and, where all
-    /// readings were explained at once, that motion with its bounds (`whole_phi0`, `whole_omega0`, `whole_r1`, `whole_r2`) and centre of mass. A bound is a standard deviation. Those of an
+    /// The estimates sample by sample: each estimated state of an answer with its bound (`r1`, `r1_bound`, ...), whether the body was observed (`seen`, 1 or 0), and, where there is a batch
+    /// estimate of all measurements, that motion with its bounds (`whole_phi0`, `whole_omega0`, `whole_r1`, `whole_r2`) and centre of mass. A bound is a standard deviation. Those of an
     /// answer are its window's, carried along the flow to each sample, or a filter's own; where there is none they are not a number.
     ///
     /// # Errors
@@ -55,7 +55,7 @@ impl Experiment {
         }
         let seen = track.estimates.iter();
         let seen = seen.map(|at| f64::from(u8::from(track.updates.is_empty() || !at.residual.is_empty())));
-        columns.push(("seen".to_owned(), seen.collect()));
+        columns.push(("observed".to_owned(), seen.collect()));
         if let Some(reconstruction) = reconstruction {
             let orientation =
                 reconstruction.track.instants.iter().map(|at| at.orientation).collect::<Vec<f64>>();
@@ -63,7 +63,7 @@ impl Experiment {
                 columns.push(("orientation".to_owned(), orientation));
             }
             if let Some(whole) = &reconstruction.whole {
-                // a long record is thinned out: there is nothing to say at the samples between
+                // a long record is thinned out: there are no values at the samples between
                 let at = |time: f64| {
                     let place = whole.samples.binary_search_by(|sample| sample.time.total_cmp(&time)).ok()?;
                     whole.samples.get(place)

@@ -1,4 +1,4 @@
-//! What an observer's estimates say of the outline, sample by sample: where the contacts are in the frame of the body, at which normals.
+//! The outline by an observer's estimates, sample by sample: where the contacts are in the frame of the body, and at which normals.
 //!
 //! This is geometry of two palms about the origin, flat or circular.
 
@@ -10,7 +10,7 @@ use palmistry_math::number::rational_to_f64;
 use palmistry_observe::{Signals, Update, UpdateEnd, WhenUnobservable};
 use std::f64::consts::FRAC_PI_2;
 
-/// The answer whose outline is shown: of the first method by windows that saw anything, else of the first by windows, else of the first.
+/// The answer whose outline is shown: of the first method by windows that observed anything, else of the first by windows, else of the first.
 #[doc(hidden)]
 pub fn shown(answers: &[Answer]) -> Option<&Answer> {
     let by_windows = || answers.iter().filter(|answer| !answer.track.updates.is_empty());
@@ -19,12 +19,12 @@ pub fn shown(answers: &[Answer]) -> Option<&Answer> {
 }
 
 fn sees(update: &Update) -> bool {
-    !matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_))
+    !matches!(update.end, UpdateEnd::Unobservable { .. } | UpdateEnd::Lost(_))
 }
 
-/// From when on, in s, windows tell no outline: where a search did not come to its end, or where between windows that see there is one that does not, and nothing else answers
-/// there. The orientation of all later ones hangs on it. A window that is blind and goes on by its equations is none.
-fn hole(answer: &Answer, when_blind: WhenUnobservable) -> Option<f64> {
+/// The time, in s, from which windows give no outline: where a search did not converge, or where a window between observing ones does not observe, and no other one covers
+/// it. The orientation of all later ones depends on it. An uninformative window that goes on by its equations does not count.
+fn hole(answer: &Answer, when_unobservable: WhenUnobservable) -> Option<f64> {
     let updates = &answer.track.updates;
     let is_answered = |update: &Update| sees(update) && update.end != UpdateEnd::StepsSpent;
     let ends = (updates.iter().position(is_answered), updates.iter().rposition(is_answered));
@@ -35,7 +35,9 @@ fn hole(answer: &Answer, when_blind: WhenUnobservable) -> Option<f64> {
         let is_unanswered = match update.end {
             UpdateEnd::StepsSpent => true,
             UpdateEnd::Lost(_) => (first..last).contains(place),
-            UpdateEnd::Blind { .. } => when_blind == WhenUnobservable::Hold && (first..last).contains(place),
+            UpdateEnd::Unobservable { .. } => {
+                when_unobservable == WhenUnobservable::Hold && (first..last).contains(place)
+            }
             _ => false,
         };
         is_unanswered && !updates.iter().any(covers)
@@ -43,14 +45,14 @@ fn hole(answer: &Answer, when_blind: WhenUnobservable) -> Option<f64> {
     updates.iter().enumerate().find(is_hole).map(|(_, update)| update.from)
 }
 
-/// Why windows tell no outline, in words; none where they do. Between flat palms all measurements at once are asked first: where that comes to nothing, or
-/// windows contradict it, these are believed only if they pass all their tests.
+/// Why windows give no outline, as text; none where they do. Between flat palms all measurements at once are tried first: where that fails, or
+/// windows contradict it, these are accepted only if they pass all their tests.
 pub(super) fn no_outline(
     answer: &Answer,
     forms: &[Palm<f64>],
-    when_blind: WhenUnobservable,
+    when_unobservable: WhenUnobservable,
 ) -> Option<String> {
-    if let Some(from) = hole(answer, when_blind) {
+    if let Some(from) = hole(answer, when_unobservable) {
         return Some(format!(
             "no outline is estimated from the windows: from {from:.3} s there is no answer"
         ));
@@ -62,7 +64,7 @@ pub(super) fn no_outline(
     })
 }
 
-/// The value of a state or constant at a sample, from the readings or from what is told.
+/// The value of a state or constant at a sample, from the measurements or from the known values.
 pub(super) fn told(experiment: &Experiment, name: &str, row: usize) -> Option<f64> {
     let signals = &experiment.signals;
     if let Some(place) = signals.find(name) {
@@ -75,10 +77,10 @@ pub(super) fn told(experiment: &Experiment, name: &str, row: usize) -> Option<f6
     })
 }
 
-/// The outline by one answer. None where the model is not one of two palms, or `r1` and `r2` were not sought.
+/// The outline by one answer. None where the model is not one of two palms, or `r1` and `r2` were not estimated.
 ///
 /// The contacts as seen from the centre of mass are `R x_i = -(r_i n_i + d_i t_i)`, with `d_i` by 3.18 and 3.19 from the recovered
-/// `r_i` and the `s_i` that are read; on curved palms the `r_i` place the centre of mass, and it the contacts. They are turned back by the
+/// `r_i` and the measured `s_i`; on curved palms the `r_i` determine the centre of mass, and it the contacts. They are turned back by the
 /// orientation, the integral of the recovered `omega0` over the curve that each window draws; it starts at the true one where that is known, and at zero otherwise.
 pub(super) fn touch_track(experiment: &Experiment, answer: &Answer) -> Option<TouchTrack> {
     let is_output = |name: &str| experiment.system.outputs.iter().any(|(output, _)| output == name);
@@ -122,13 +124,13 @@ pub(super) fn touch_track(experiment: &Experiment, answer: &Answer) -> Option<To
             orientation,
             points: arms.map(|arm| turned(arm, -orientation)),
             samples: [sample(0), sample(1)],
-            seen,
+            is_observed: seen,
         });
     }
     (!instants.is_empty()).then_some(TouchTrack { method: answer.method, forms, instants })
 }
 
-/// What the radii at each estimate are worth: the bound of the window's first sample, shared by all samples of the window, whose errors are one. One
+/// The weights of the radii at each estimate: the inverse variance at the window's first sample, divided among its samples, whose errors are one. One
 /// where there are no windows.
 fn worth(answer: &Answer, places: [usize; 2]) -> Vec<[f64; 2]> {
     let updates = &answer.track.updates;
@@ -155,7 +157,7 @@ fn worth(answer: &Answer, places: [usize; 2]) -> Vec<[f64; 2]> {
     estimates.iter().map(|moment| of(moment.time)).collect()
 }
 
-/// The orientation at each estimate. What an observer by windows believes of the rate is one smooth curve from the first sample of a window to its last, and jumps
+/// The orientation at each estimate. The rate estimated by windows is one smooth curve from the first sample of a window to its last, and jumps
 /// where the next one begins: each piece is integrated by itself, by the polynomials through its nearest samples.
 fn orientations(experiment: &Experiment, answer: &Answer) -> Option<Vec<f64>> {
     let names = experiment.names();
@@ -234,7 +236,7 @@ struct Seen {
     arms: [[f64; 2]; 2],
 }
 
-/// The forms of the palms: those of the scene; of a recording those that the model is told.
+/// The forms of the palms: those of the scene; for a recording those of the known constants.
 pub(super) fn forms(experiment: &Experiment) -> [Palm<f64>; 2] {
     if experiment.simulation.is_some() {
         return experiment.scene.palm_forms;
@@ -300,7 +302,7 @@ mod tests {
     use super::*;
     use palmistry_observe::Lost;
 
-    /// Of windows that all see, one after the other is given another end: what lies between others is a hole, what lies at an end is none, and a search without an end is one anywhere.
+    /// One window after the other is made unobservable: between others this leaves a hole, at an end it does not, and a search without convergence leaves one anywhere.
     #[test]
     fn a_hole_is_what_later_orientations_hang_on() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../proofs/moll2002/scenes/same_rate.toml");
@@ -311,15 +313,15 @@ mod tests {
         let answer = experiment.observe().unwrap_or_else(|error| panic!("{error:?}")).remove(0);
         let last = answer.track.updates.len() - 1;
         assert!(last >= 3);
-        let hole_with = |place: usize, end: UpdateEnd, when_blind| {
+        let hole_with = |place: usize, end: UpdateEnd, when_unobservable| {
             let mut other = answer.clone();
             other.track.updates[place].end = end;
-            hole(&other, when_blind)
+            hole(&other, when_unobservable)
                 .map(|from| answer.track.updates.iter().position(|own| own.from == from).unwrap())
         };
         assert_eq!(hole(&answer, WhenUnobservable::Hold), None);
         let lost = || UpdateEnd::Lost(Lost { time: 0.0, why: String::new() });
-        let blind = || UpdateEnd::Blind { weakest: Vec::new() };
+        let blind = || UpdateEnd::Unobservable { weakest: Vec::new() };
         for place in 0..=last {
             let between = (0 < place && place < last).then_some(place);
             assert_eq!(hole_with(place, UpdateEnd::StepsSpent, WhenUnobservable::Integrate), Some(place));
@@ -330,7 +332,7 @@ mod tests {
         let mut none = answer.clone();
         none.track.updates.iter_mut().for_each(|own| own.end = blind());
         assert_eq!(hole(&none, WhenUnobservable::Integrate), Some(0.0));
-        // what has grown over it answers there
+        // a window that has grown over it covers it
         let mut covered = answer.clone();
         covered.track.updates[1].end = blind();
         covered.track.updates[2].from = answer.track.updates[1].from;

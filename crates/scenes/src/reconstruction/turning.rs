@@ -1,7 +1,7 @@
-//! Beginnings for a body whose motion nobody knows: rates on a grid, each bent by a constant acceleration.
+//! Initial values for a body of unknown motion: rates on a grid, each with a constant acceleration.
 //!
-//! Along a motion that is given the contacts are linear in the support function, so that each such motion has one body that explains them best, in one step and without a first
-//! guess. A body that hardly turns is explained by many of them; what the law of motion says of it, a search from each has to find out.
+//! Along a given motion the contacts are linear in the support function, so that each such motion has one body that explains them best, in one step and without a first
+//! guess. A body that hardly turns is explained by many of them; a search from each then decides by the law of motion.
 
 use super::candidate::Best;
 use super::descent::{joined, solved, triangle_of};
@@ -15,23 +15,23 @@ use std::sync::atomic::AtomicBool;
 /// Harmonics of a body that is found along a given motion.
 const ORDER: usize = 6;
 
-/// Rates on the grid on either side of rest, and accelerations, in parts of what bends the fastest rate to rest within the part of the record that is looked at.
+/// Rates on the grid on either side of zero, and accelerations, relative to the one that stops the fastest rate within the first part of the record.
 const RATES: i32 = 30;
 const BENDS: i32 = 10;
 
-/// So many ends go on from one part of the record to the next.
+/// This many ends go on from one part of the record to the next.
 const KEPT: [usize; 4] = [24, 16, 12, 6];
 
-/// So many samples of the part are looked at.
+/// This many samples of the part are used.
 const LOOKED_AT: usize = 100;
 
-/// What contacts are worth in parts of the size of the body, where a motion is no more than near the true one.
+/// The standard deviation of contacts relative to the size of the body, where a motion is only near the true one.
 const WORTH: f64 = 1e-3;
 
-/// What the angle at the end of the part is worth, in rad, that the law of motion adds to the one of a given motion.
+/// The standard deviation, in rad, of the angle at the end of the part that the law of motion adds to a given motion.
 const TURN: f64 = 1e-2;
 
-/// Two ends of searches are one whose sums of squares and rates differ by no more than this part, sums by no more than a unit.
+/// Two ends of searches are the same if their sums of squares and rates differ by no more than this fraction, sums by no more than a unit.
 const SAME: f64 = 1e-3;
 
 fn is_same(a: &Best, b: &Best) -> bool {
@@ -49,7 +49,7 @@ struct Given {
 }
 
 impl WholeRecord {
-    /// What is found from each rate of the grid: the ends of searches through the record that differ, the best first.
+    /// The different ends of searches through the record from each rate of the grid, the best first.
     pub fn begun_by_turning(&self, interrupt: &AtomicBool) -> Vec<Best> {
         let mut begins = self.along_a_grid();
         let mut found: Vec<Best> = Vec::new();
@@ -68,11 +68,11 @@ impl WholeRecord {
         found
     }
 
-    /// For each rate of a grid that is fine near rest the acceleration that explains the first part of the record best, by the contacts and by the law of motion in the mean.
+    /// For each rate of a grid that is fine near zero the acceleration that explains the first part of the record best, by the contacts and by the law of motion in the mean.
     fn along_a_grid(&self) -> Vec<Unknowns> {
         let discs = self.discs();
         let Some(disc) = discs.first() else { return Vec::new() };
-        // a body that begins at rest is bent all the same
+        // a body that begins at rest is accelerated all the same
         let fastest = self.fastest(disc.support.mean());
         let rows = self.parts()[0];
         let span = self.times[rows - 1] - self.times[0];
@@ -100,7 +100,7 @@ impl WholeRecord {
         (self.times[place], phi, given.rate + since * given.acceleration)
     }
 
-    /// The body that explains samples best along a given motion, and what it leaves: the sum of squares in parts of [`WORTH`].
+    /// The body that explains samples best along a given motion, and its sum of squares in units of [`WORTH`].
     fn along(&self, given: Given, places: &[usize], disc: &Unknowns) -> Option<(f64, Unknowns)> {
         let prior = convex_weights(self.size(), ORDER);
         let p = prior.len();
@@ -130,7 +130,7 @@ impl WholeRecord {
         Some((triangle[(p, p)].powi(2), Unknowns { rate: given.rate, support, ..disc.clone() }))
     }
 
-    /// What the law of motion asks of a body in the mean beyond a given acceleration, in rad/s^2.
+    /// The mean difference between the acceleration by the law of motion and the given one, in rad/s^2.
     fn acceleration_missed(&self, given: Given, places: &[usize], x: &Unknowns) -> f64 {
         let missed = places.iter().map(|place| {
             let (time, phi, rate) = self.given_at(given, *place);
@@ -145,7 +145,7 @@ mod tests {
     use super::*;
     use crate::{Experiment, Scene};
 
-    /// Section 4.6, which begins at rest and says so: its only rate is bent all the same, and what is found explains the first part better than a body at rest does.
+    /// Section 4.6, which begins at rest and says so: its only rate is accelerated all the same, and the result explains the first part better than a body at rest does.
     #[test]
     fn a_body_that_begins_at_rest_is_bent() {
         let text = include_str!("../../../../proofs/moll2002/scenes/section_4_6.toml");

@@ -1,10 +1,10 @@
-//! Shape and motion of a body from all readings of a record at once, by least squares.
+//! Shape and motion of a body from all measurements of a record at once, by least squares.
 //!
 //! The body slides between two flat palms by its one law of motion (`law`), so that all contacts follow from its rate at the first sample and its
-//! support function: a handful of unknowns for hundreds of readings. No torque and no mass is in it, no derivative of a reading, and no window: what
-//! a method by windows forgets from one to the next is kept here. The search begins at a shape and a rate that others found, on the first part of the record, and goes
-//! on to all of it. Then candidates are held against each other, Fourier polynomials of all orders (`series`) and closed splines through a few points (`knots`), each with the probability that it gives to the
-//! readings. What they differ by is in the band.
+//! support function: a handful of unknowns for hundreds of measurements. No torque and no mass is in it, no derivative of a measurement, and no window: what
+//! a method by windows forgets from one to the next is kept here. The search begins at the shape and rate of another estimate, on the first part of the record, and goes
+//! on to all of it. Then candidates are compared, Fourier polynomials of all orders (`series`) and closed splines through a few points (`knots`), each weighted by its
+//! evidence. Their differences are in the band.
 
 use super::candidate::{Best, Found};
 use super::record::{Unknowns, WholeRecord};
@@ -13,7 +13,7 @@ use crate::simulation::NOMINAL;
 use palmistry_bodies::shape::deviation_of;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What a whole record told: the likeliest candidate, and the others with their probabilities.
+/// The estimate from a whole record: the likeliest candidate, and the others with their probabilities.
 pub(super) struct Told {
     pub best: Found,
     pub others: Vec<(f64, Found)>,
@@ -22,38 +22,38 @@ pub(super) struct Told {
 /// Parts of the record that are explained one after the other.
 const PARTS: [f64; 4] = [0.15, 0.3, 0.6, 1.0];
 
-/// Fewer rows than these are no part.
+/// The fewest rows of a part.
 const FEWEST: usize = 24;
 
-/// A residual below this part of the mean radius is one of the shape; a larger one is one of a motion that is another.
+/// A residual below this fraction of the mean radius is an error of the shape; a larger one means another motion.
 const FOUND: f64 = 1e-2;
 
-/// So many ends of searches with few harmonics go on to all orders.
+/// This many ends of searches with few harmonics go on to all orders.
 const KEPT: usize = 6;
 
-/// So many of those that do not explain the readings go on with more harmonics, and as splines.
+/// This many of those that do not explain the measurements go on with more harmonics, and as splines.
 const UNEXPLAINED: usize = 2;
 
-/// A deviation of a support radius beyond this part of the mean radius is no small one: errors may not be linear there, and another motion may explain the readings as well.
+/// A deviation of a support radius beyond this fraction of the mean radius is not small: errors may not be linear there, and another motion may explain the measurements as well.
 const WIDE: f64 = 2e-3;
 
-/// The standard deviation of the contacts at first where none is stated, in parts of their mean.
+/// The initial standard deviation of the contacts where none is stated, relative to their mean.
 const UNSTATED: f64 = 1e-4;
 
-/// A candidate that leaves less than this part of what another one leaves is the only one.
+/// A candidate whose residual is below this fraction of another one's is the only one.
 const SMALLER: f64 = 0.5;
 
-/// Of noise fewer neighbours than these count as one.
+/// For noise the correlation length of the residuals is below this many neighbours.
 const ALIKE: f64 = 1.5;
 
-/// What leaves less than this part of the size of the body leaves nothing of readings without noise but what the integration does.
+/// A residual below this fraction of the size of the body is due to the integration alone, for measurements without noise.
 const EXACT: f64 = 1e-10;
 
-/// Candidates that are less likely are left out.
+/// Candidates of a lower probability are left out.
 const UNLIKELY: f64 = 1e-4;
 
 impl WholeRecord {
-    /// Shape and motion, from where others began; none where nothing can be followed, or it was interrupted. Where no deviation of a contact is stated it is what the best candidate leaves.
+    /// Shape and motion, from given initial values; none where nothing can be followed, or it was interrupted. Where no deviation of a contact is stated it is taken from the residual of the best candidate.
     pub fn tell(&mut self, starts: &[Unknowns], stated: f64, interrupt: &AtomicBool) -> Option<Told> {
         let is_stated = stated > 0.0;
         self.sigma = if is_stated { stated } else { UNSTATED * self.size() };
@@ -75,7 +75,7 @@ impl WholeRecord {
                 let (least, others) = others.unwrap_or_default();
                 let is_less = |other: &Found| !other.is_spline() && other.rms_residual < SMALLER * least;
                 if let Some(better) = others.iter().find(|other| is_less(other)) {
-                    // what the first one left was not noise
+                    // the residual of the first one was not noise
                     self.sigma = UNSTATED * self.size();
                     all = self.by_what_is_left(better.clone(), interrupt)?;
                 } else {
@@ -84,13 +84,13 @@ impl WholeRecord {
                 all
             }
         };
-        // where none of them is a body the readings tell none, whatever else explains them
+        // where none of them is a body there is no sure answer, whatever else explains the measurements
         if candidates.iter().any(Found::is_body) {
             candidates.retain(Found::is_body);
         } else {
             candidates.iter_mut().for_each(|found| found.is_sure = false);
         }
-        // beside a search that has ended, with errors that are linear, no other is believed
+        // where a search has converged and its errors are linear, other candidates are dropped
         if candidates.iter().any(|found| found.is_sure) {
             candidates.retain(|found| found.is_sure);
         }
@@ -99,7 +99,7 @@ impl WholeRecord {
         (is_stated || self.is_exact(&told.best) || self.is_spread(&told.best)).then_some(told)
     }
 
-    /// The candidates of readings whose deviation nobody states, measured by what the best of them leaves. No other body is asked for beside a series that leaves nothing, or noise below what is believed of any reading.
+    /// The candidates for measurements without a stated deviation, which is taken from the residual of the best of them. No other body is tried where the series leaves no residual, or noise below what is accepted for any measurement.
     fn by_what_is_left(&mut self, first: Found, interrupt: &AtomicBool) -> Option<Vec<Found>> {
         let unstated = self.sigma;
         let mut series = first.clone();
@@ -108,11 +108,11 @@ impl WholeRecord {
             series = self.series(&series.unknowns, interrupt)?;
         }
         let left = self.left(&series);
-        // what is little and still a curve is one that a spline may not leave
+        // a small residual that is still a curve may vanish with a spline
         if left <= NOMINAL && (self.is_exact(&series) || self.alike(&series) < ALIKE) {
             self.sigma = left;
             let mut all = vec![series];
-            // harmonics without an end may be those of a kink
+            // a series of very high order may be that of a kink
             if all[0].shape.support.order() > Self::ORDER_OF_SMOOTH {
                 let splines = self.splines(&all[0], false, interrupt);
                 all.extend(splines.into_iter().filter(|spline| spline.rms_residual <= NOMINAL));
@@ -136,7 +136,7 @@ impl WholeRecord {
             let again: Vec<Found> = again.collect();
             return Some([vec![series], again].concat());
         }
-        // the series leaves what the readings do not have
+        // the series leaves a residual that the measurements do not have
         let sigma = std::mem::replace(&mut self.sigma, least.max(NOMINAL));
         let again = splines.iter().filter(|spline| spline.rms_residual <= 2.0 * self.sigma);
         let again: Vec<Found> = again.filter_map(|spline| self.spline_again(spline, interrupt)).collect();
@@ -147,7 +147,7 @@ impl WholeRecord {
         Some(again)
     }
 
-    /// The deviation of a contact that a candidate leaves, in m.
+    /// The deviation of a contact estimated from a candidate's residual, in m.
     fn left(&self, found: &Found) -> f64 {
         let n = found.shape.samples as f64;
         (found.rms_residual * (n / found.shape.degrees as f64).sqrt()).max(NOMINAL)
@@ -159,7 +159,7 @@ impl WholeRecord {
         self.at_minimum(&best, &prior).filter(|_| best.is_settled)
     }
 
-    /// A series that explains most, from where others began; where what they found explains nothing, from motions on a grid.
+    /// A series that explains most, from given initial values; where these explain nothing, from motions on a grid.
     fn begin(&self, starts: &[Unknowns], interrupt: &AtomicBool) -> Option<Best> {
         let rows = self.times.len();
         let stop = || interrupt.load(Ordering::Relaxed);
@@ -186,18 +186,18 @@ impl WholeRecord {
         best.filter(|_| !stop())
     }
 
-    /// Whether what is left is noise, where it is stated how large that is. Deviations about a motion that explains less are those of another one.
+    /// Whether the residual passes the chi-square test, where a deviation is stated. The covariance about a motion that fails it is that of another one.
     fn is_told(&self, found: &Found) -> bool {
         !self.stated || self.is_explained(found.shape.chi_square, self.times.len())
     }
 
-    /// Whether what is left is nothing, or noise.
+    /// Whether the residual is zero, or noise.
     fn is_noise(&self, found: &Found) -> bool {
         if self.stated { self.is_told(found) } else { self.is_exact(found) || self.alike(found) < ALIKE }
     }
 
-    /// Other series, and splines, that explain readings with noise as large as these: where one explains them not, or its band is wide, the motion that was met first need not be the likeliest, nor the only one. A search
-    /// that believes little of the harmonics runs far along what the readings hardly tell; so each begins with few harmonics and much belief, the likeliest go on. Where few harmonics explain nothing there may be
+    /// Other series, and splines, that explain measurements with noise as large as these: where this one fails, or its band is wide, the motion that was found first need not be the likeliest, nor the only one. A search
+    /// with a weak prior of the harmonics runs far along poorly determined directions; so each begins with few harmonics and a strong prior, and the likeliest go on. Where few harmonics explain nothing there may be
     /// kinks: the best of such ends go on with more harmonics and as splines.
     fn elsewhere(&self, starts: &[Unknowns], found: &Found, interrupt: &AtomicBool) -> Vec<Found> {
         if !self.is_wide(found) && self.is_noise(found) {
@@ -232,7 +232,7 @@ impl WholeRecord {
         })
     }
 
-    /// A series of the order that it has, about which no more is known than that it is convex.
+    /// A series of the order that it has, with the prior of convexity alone.
     pub(super) fn low(&self, start: Unknowns, rows: usize, interrupt: &AtomicBool) -> Option<Best> {
         let order = start.support.order();
         self.descend(expanded(&start, order), &convex_weights(self.size(), order), rows, interrupt)
@@ -250,7 +250,7 @@ impl WholeRecord {
         end
     }
 
-    /// So many samples of the record are explained one after the other.
+    /// The numbers of samples of the parts that are explained one after the other.
     pub(super) fn parts(&self) -> [usize; 4] {
         PARTS.map(|part| self.part(part))
     }
@@ -260,7 +260,7 @@ impl WholeRecord {
         ((part * rows as f64) as usize).clamp(rows.min(FEWEST), rows)
     }
 
-    /// What is left more than noise explains makes all deviations larger; and where neighbours are left alike, no sample tells as much as an independent one.
+    /// A residual larger than noise increases all deviations; and where the residuals of neighbours are correlated, no sample counts as an independent one.
     fn widened(&self, mut told: Told, is_stated: bool) -> Told {
         let best = &told.best;
         let spread = (best.shape.chi_square / best.shape.degrees as f64).max(1.0);
@@ -282,14 +282,14 @@ impl WholeRecord {
         found.rms_residual <= EXACT * self.size()
     }
 
-    /// Whether what is left counts as more independent numbers than there are unknowns. Where it does not it is a curve: nothing says how large errors are, and the
-    /// shape is another one.
+    /// Whether the residual counts as more independent numbers than there are unknowns. Where it does not it is a curve: the size of the errors is unknown, and the
+    /// shape is wrong.
     fn is_spread(&self, found: &Found) -> bool {
         let (samples, degrees) = (found.shape.samples as f64, found.shape.degrees as f64);
         samples / self.alike(found) > samples - degrees
     }
 
-    /// How many neighbours count as one: the sum of the autocorrelations of what is left, up to the first that is not positive.
+    /// The correlation length of the residuals, in samples: the sum of their autocorrelations, up to the first that is not positive.
     fn alike(&self, found: &Found) -> f64 {
         let mut most: f64 = 1.0;
         for palm in 0..2 {
@@ -308,7 +308,7 @@ impl WholeRecord {
     }
 }
 
-/// Without those that say the same as one before them.
+/// Candidates without those that agree with an earlier one.
 fn different(candidates: Vec<Found>) -> Vec<Found> {
     let mut kept: Vec<Found> = Vec::new();
     for found in candidates {
@@ -319,12 +319,12 @@ fn different(candidates: Vec<Found>) -> Vec<Found> {
     kept
 }
 
-/// Which candidates the readings refute beside another one: these are none, however few unknowns they have; they were not found, or are not the body.
+/// Which candidates the measurements refute beside another one: these are dropped, however few unknowns they have; they have not converged, or are not the body.
 fn refuted(candidates: &[Found]) -> Vec<bool> {
     candidates.iter().map(|found| candidates.iter().any(|other| found.is_refuted_by(other))).collect()
 }
 
-/// The likeliest that the readings do not refute, a body if there is one.
+/// The likeliest that the measurements do not refute, a body if there is one.
 fn likeliest(candidates: &[Found]) -> Option<&Found> {
     let any = candidates.iter().any(Found::is_body);
     let left = candidates.iter().zip(refuted(candidates));
@@ -332,7 +332,7 @@ fn likeliest(candidates: &[Found]) -> Option<&Found> {
     left.map(|(found, _)| found).max_by(|a, b| a.evidence.total_cmp(&b.evidence))
 }
 
-/// Candidates that the readings do not refute by their probabilities, the likeliest first.
+/// The candidates that the measurements do not refute, with their probabilities, the likeliest first.
 fn weighed(mut candidates: Vec<Found>) -> Option<Told> {
     let mut refuted = refuted(&candidates).into_iter();
     candidates.retain(|_| refuted.next() == Some(false));

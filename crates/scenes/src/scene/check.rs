@@ -1,4 +1,4 @@
-//! Holds every value of a scene to what it may be, and settles which of two ways of saying a thing was used.
+//! Checks every value of a scene, and decides which of two ways to state a thing was used.
 
 mod columns;
 mod library;
@@ -20,18 +20,18 @@ pub(super) const STREAM_NAME: &str = "-";
 /// The most samples that a scene may ask for: each takes about a kilobyte.
 const MOST_SAMPLES: usize = 1_000_000;
 
-/// Where the readings come from, as far as what is asked of them depends on it.
+/// The source of the measurements, as far as other checks depend on it.
 #[derive(Clone, Copy)]
 pub(super) struct Source {
-    /// How many there are of each, where they are simulated.
+    /// The number of samples, where they are simulated.
     pub samples: Option<usize>,
-    /// Whether something is said of the errors of readings.
+    /// Whether errors of measurements are stated.
     pub is_noisy: bool,
     /// Whether a body between palms is described.
     pub has_palms: bool,
 }
 
-/// Marks values that cannot be.
+/// Reports values that are not allowed.
 pub(super) struct Checks<'a> {
     places: &'a Places<'a>,
 }
@@ -78,7 +78,7 @@ impl Checks<'_> {
         Err(self.wrong(place, format!("'{}' cannot be {value}", last(place)), help))
     }
 
-    /// Names of which none is empty or there twice.
+    /// Names, none of which may be empty or occur twice.
     fn names<T: Ord>(&self, place: &str, names: &[T], shown: impl Fn(&T) -> String) -> Result<(), Problem> {
         let mut seen = BTreeSet::new();
         for (index, name) in names.iter().enumerate() {
@@ -127,7 +127,7 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
     let SensorKeys { sensor, channels } = keys.sensor;
     checks.sensor(&sensor)?;
     checks.channels(&channels, keys.data.record.is_some())?;
-    // nothing is a spike that would have to be infinitely far off
+    // with an infinite threshold nothing is a spike
     if keys.data.spike != f64::INFINITY {
         checks.positive("data.spike", keys.data.spike, "usual departures")?;
     }

@@ -12,9 +12,9 @@ pub struct SceneColumn {
     pub from: String,
     /// `unit`, in which the recording has it; the model's own unless given.
     pub unit: Option<ScaledUnit>,
-    /// `factor`: by what a number of the recording is multiplied, beside its unit; 1 unless given.
+    /// `factor`: the factor by which numbers of the recording are multiplied, beside their unit; 1 unless given.
     pub factor: f64,
-    /// `offset`: what is added then, in the model's unit; 0 unless given.
+    /// `offset`: the number that is added then, in the model's unit; 0 unless given.
     pub offset: f64,
 }
 

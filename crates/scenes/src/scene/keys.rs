@@ -1,4 +1,4 @@
-//! The file as it is written: what serde reads, before it is known whether the values go together.
+//! The file as it is written: the keys that serde reads, before their values are checked against each other.
 
 use super::observing::{Channel, Data, Method, Sensor, Study, Switch};
 use super::place::Places;
@@ -87,7 +87,7 @@ impl<'de> Deserialize<'de> for SensorKeys {
     }
 }
 
-/// What stands behind a key of `[sensor]` that is none of its own.
+/// The value of a key of `[sensor]` that is none of its own.
 enum ChannelKeys {
     Table(Channel),
     Other,
@@ -200,10 +200,10 @@ pub(super) struct ObserverKeys {
     pub window: Option<usize>,
     #[serde(default = "five")]
     pub steps: usize,
-    #[serde(default)]
-    pub when_blind: WhenUnobservable,
-    #[serde(default = "unity")]
-    pub blind: f64,
+    #[serde(default, alias = "when_blind")]
+    pub when_unobservable: WhenUnobservable,
+    #[serde(default = "unity", alias = "blind")]
+    pub unobservable_above: f64,
     #[serde(default = "yes")]
     pub inherit: bool,
     #[serde(default)]
@@ -229,7 +229,7 @@ pub(super) struct ObserverKeys {
     pub switch: Option<Switch>,
 }
 
-/// `[[observer.modes]]`: another system that the readings may be of, beside the scene's own.
+/// `[[observer.modes]]`: another system that may explain the measurements, beside the scene's own.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ModeKeys {
@@ -252,7 +252,7 @@ pub(super) enum GuessKeys {
     Word(String),
 }
 
-/// By hand, so that what is wrong with a value is said of it and not of the whole.
+/// By hand, so that an error is reported for a value and not for the whole table.
 impl<'de> Deserialize<'de> for GuessKeys {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Either;

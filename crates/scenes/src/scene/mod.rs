@@ -1,6 +1,6 @@
 //! Scene files: an experiment in TOML, read into plain structures, with errors that point into the text.
 //!
-//! [`keys`] is the file as it is written, [`check`] holds every value to what it may be, [`place`] knows where in the
+//! [`keys`] is the file as it is written, [`check`] checks every value, [`place`] knows where in the
 //! text each stands. Nothing here simulates or estimates.
 
 mod check;
@@ -29,8 +29,11 @@ use place::Places;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// An experiment: what is held and how it moves, or where it was recorded; what the sensors read; and the observers
-/// that are to find the state out.
+/// Former names of keys of `[observer]`, which are aliases of the present ones.
+const OLD_KEYS: [(&str, &str); 2] = [("blind", "unobservable_above"), ("when_blind", "when_unobservable")];
+
+/// An experiment: what is held and how it moves, or where it was recorded; the sensors; and the observers
+/// that are to estimate the state.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// `title`: what the experiment is, in a line.
@@ -38,7 +41,7 @@ pub struct Scene {
     /// `model`: the proof file of the system that the observers know. The file names it relative to itself; here it is
     /// relative to where the program runs.
     pub model: PathBuf,
-    /// `seed`: where random numbers begin; 1 unless given.
+    /// `seed`: the seed of the random numbers; 1 unless given.
     pub seed: u64,
     /// `duration`, `samples` or `rate`, `[body]` and `[palms]`: what is simulated. Absent where the data is recorded.
     pub simulated: Option<Simulated>,
@@ -50,15 +53,15 @@ pub struct Scene {
     /// `radii` of `[palms]`, in m: positive of a hollow circular palm, negative of a bulging one, infinite of a flat one, as both
     /// are unless given.
     pub palm_forms: [Palm<f64>; 2],
-    /// `[sensor]`: how well the sensors read.
+    /// `[sensor]`: the errors of the sensors.
     pub sensor: Sensor,
-    /// `[sensor.NAME]`: how well single columns are read, by name.
+    /// `[sensor.NAME]`: the errors of single columns, by name.
     pub channels: BTreeMap<String, Channel>,
     /// `[columns]`: columns of a recording that have other names or units than in the model, by the model's names.
     pub columns: BTreeMap<String, SceneColumn>,
     /// `[data]`: recorded data, and what to do with a faulty row.
     pub data: Data,
-    /// `[observer]`: what is to be found out, and how.
+    /// `[observer]`: what is to be estimated, and how.
     pub observer: ObserverSettings,
     /// `[study]`: what to try many times over.
     pub study: Study,
@@ -88,7 +91,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Reads a scene from a text. Files that it names are taken to lie where they do as seen from `name`, the name
+    /// Reads a scene from a text. Paths in it are relative to the folder of `name`, the name
     /// under which the text is shown; they are not looked for.
     ///
     /// # Errors
@@ -99,7 +102,7 @@ impl Scene {
         check::scene(keys, &places, name, text).map_err(|problem| problem.locate(name, text))
     }
 
-    /// An error that marks a value of this scene, for those who find it out of place later. The place is named by its
+    /// An error that marks a value of this scene, for checks after it was read. The place is named by its
     /// keys, as in `observer.estimate[2]` or `body.shape`; where it is not there, the nearest table is marked.
     pub fn error_at(
         &self,
@@ -108,12 +111,18 @@ impl Scene {
         label: impl Into<String>,
         help: impl Into<String>,
     ) -> SceneError {
-        // the text was read before: it has places
+        // the text was parsed before: it has places
         let span = Places::of(&self.text).map_or(0..0, |places| places.value(place));
         Problem::new(Code::SceneValue, &span, message, label).help(help).locate(&self.name, &self.text)
     }
 
-    /// The text that was read.
+    /// Keys of this scene that are written with a former name: each with its present name.
+    pub fn old_keys(&self) -> Vec<(&'static str, &'static str)> {
+        let Ok(places) = Places::of(&self.text) else { return Vec::new() };
+        OLD_KEYS.into_iter().filter(|(old, _)| places.has("observer", old)).collect()
+    }
+
+    /// The text of the scene.
     #[doc(hidden)]
     pub fn text(&self) -> &str {
         &self.text
@@ -128,7 +137,7 @@ impl Scene {
             .map_err(|problem| problem.locate(&self.name, &self.text))
     }
 
-    /// The rules by which a record of this scene is held to be faulty: those of `[data]`, with the sensors' jitter and
+    /// The rules by which rows of this scene's record count as faulty: those of `[data]`, with the sensors' jitter and
     /// resolution.
     pub fn fault_rules(&self) -> FaultRules {
         let resolution = self.sensor.resolution;

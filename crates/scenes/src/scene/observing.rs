@@ -1,4 +1,4 @@
-//! What is measured, and what is to be found out from it.
+//! The measurements, and what is to be estimated from them.
 
 use super::simulated::LibraryBody;
 use palmistry_observe::{
@@ -11,32 +11,32 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
 
-/// How well the sensors read. All zero unless given.
+/// The errors of the sensors. All zero unless given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Sensor {
     /// `noise`: the standard deviation of s1 and s2, in m.
     pub noise: f64,
-    /// `resolution`: readings of s1 and s2 are rounded to multiples of it, in m.
+    /// `resolution`: measurements of s1 and s2 are rounded to multiples of it, in m.
     pub resolution: f64,
     /// `jitter`: the standard deviation of the time from one sample to the next, in s.
     pub jitter: f64,
 }
 
-/// `[sensor.NAME]`: how one column is read. A reading is `gain * x(t - delay) + bias`, with normal errors, rounded.
+/// `[sensor.NAME]`: the sensor of one column. A measurement is `gain * x(t - delay) + bias`, with normal errors, rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Channel {
-    /// `noise`: the standard deviation of a reading, in the column's unit; that of `[sensor]` for s1 and s2 unless given, and zero for
+    /// `noise`: the standard deviation of a measurement, in the column's unit; that of `[sensor]` for s1 and s2 unless given, and zero for
     /// all others.
     pub noise: Option<f64>,
-    /// `resolution`: readings are rounded to multiples of it; as for the noise unless given.
+    /// `resolution`: measurements are rounded to multiples of it; as for the noise unless given.
     pub resolution: Option<f64>,
-    /// `bias`: what is added, in the column's unit; 0 unless given. Of a simulated sensor: observers are not told.
+    /// `bias`: what is added, in the column's unit; 0 unless given. Of a simulated sensor: observers do not know it.
     pub bias: f64,
-    /// `gain`: by what it is multiplied; 1 unless given. Of a simulated sensor: observers are not told.
+    /// `gain`: the factor by which it is multiplied; 1 unless given. Of a simulated sensor: observers do not know it.
     pub gain: f64,
-    /// `delay`: by how much the reading is late, in s; 0 unless given. Of a simulated sensor: observers are not told.
+    /// `delay`: by how much the measurement is late, in s; 0 unless given. Of a simulated sensor: observers do not know it.
     pub delay: f64,
 }
 
@@ -54,7 +54,7 @@ pub struct Data {
     pub record: Option<PathBuf>,
     /// `on_fault`: `"stop"`, unless `"skip"` is given.
     pub on_fault: OnFault,
-    /// `spike`: a value this many usual departures off what its neighbours foretell is a spike; 8 unless given, and none is with `inf`.
+    /// `spike`: a value this many usual departures off the prediction of its neighbours is a spike; 8 unless given, and none is with `inf`.
     pub spike: f64,
     /// `interpolation`: how columns that drive the model go from one sample to the next: `"polynomial"`, unless `"linear"` or `"hold"` is given.
     pub interpolation: Interpolation,
@@ -66,38 +66,38 @@ impl Default for Data {
     }
 }
 
-/// What is to be found out, and how.
+/// What is to be estimated, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObserverSettings {
     /// `methods`: one or more, none twice.
     pub methods: Vec<Method>,
-    /// `estimate`: the states that are sought, none twice. Others are read from the record.
+    /// `estimate`: the estimated states, none twice. Others are taken from the record.
     pub estimate: Vec<String>,
-    /// `known`: states and parameters of the model that no column gives and that are not sought, with their values.
+    /// `known`: states and parameters of the model that no column gives and that are not estimated, with their values.
     pub known: BTreeMap<String, f64>,
     /// `inputs`: input fields of the model and the columns that drive them, as in `{ g1 = "tau1" }`; none unless given.
     pub inputs: BTreeMap<String, String>,
-    /// `guess` or `guess_off`: where the search begins; where a body between palms is described, `"none"` unless given, and
+    /// `guess` or `guess_off`: the initial value of the search; where a body between palms is described, `"none"` unless given, and
     /// where another system is, `"sample"`.
     pub guess: Guess,
-    /// `clamp`: sought states that keep their first guess in the first window; none unless given.
+    /// `clamp`: estimated states that keep their first guess in the first window; none unless given.
     pub clamp: Vec<String>,
     /// `window`: the samples of one window; 80 unless given, or all where there are fewer.
     pub window: usize,
     /// `steps`: Newton steps a window; 5 unless given.
     pub steps: usize,
-    /// `when_blind`: what to do while the outputs do not tell the state; `"integrate"` unless given.
-    pub when_blind: WhenUnobservable,
-    /// `blind`: the relative standard deviation (its bound by the size of the state) beyond which a state is not seen;
+    /// `when_unobservable`: what to do while the outputs do not determine the state; `"integrate"` unless given.
+    pub when_unobservable: WhenUnobservable,
+    /// `unobservable_above`: the relative standard deviation (Cramér-Rao bound by the size of the state) above which a state counts as unobservable;
     /// 1 unless given.
-    pub blind: f64,
-    /// `inherit`: whether a window begins with what those before it have learned; true unless given.
+    pub unobservable_above: f64,
+    /// `inherit`: whether a window starts with the estimate and covariance of those before it; true unless given.
     pub inherit: bool,
-    /// `whole`: whether all samples are one window, which grows from `window` samples to all; false unless given.
+    /// `whole`: whether all samples are one window (batch least squares), which grows from `window` samples to all; false unless given.
     pub whole: bool,
-    /// `bounds`: between what some of what is sought lies.
+    /// `bounds`: lower and upper bounds of estimated quantities, by name.
     pub bounds: BTreeMap<String, [f64; 2]>,
-    /// `loss`: how residuals are weighed; by their squares unless given.
+    /// `loss`: the loss function of residuals; their squares unless given.
     pub loss: Loss,
     /// `[observer.shooting]`.
     pub shooting: Shooting,
@@ -107,21 +107,21 @@ pub struct ObserverSettings {
     pub unscented: Unscented,
     /// `[observer.high_gain]`.
     pub high_gain: HighGain,
-    /// `mode`: what the scene's own model is called among `modes`.
+    /// `mode`: the name of the scene's own model among `modes`.
     pub mode: String,
-    /// `[[observer.modes]]`: other systems that the readings may be of, window by window, beside the scene's own; none unless given.
+    /// `[[observer.modes]]`: other systems that may explain the measurements, window by window, beside the scene's own; none unless given.
     pub modes: Vec<ModeSettings>,
-    /// `[[observer.library]]`: known bodies of which one may be what was read; none unless given.
+    /// `[[observer.library]]`: known bodies, one of which may have been measured; none unless given.
     pub library: Vec<LibraryBody>,
-    /// `switch`: whether the rank decides which of `modes` answers each window, and how; by the error of the output unless given.
+    /// `switch`: whether the rank decides which of `modes` answers each window, and how; the output error decides unless given.
     pub switch: Option<Switch>,
 }
 
-/// Who may answer where the rank decides.
+/// The condition for an observer to answer, where the rank decides.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Switch {
-    /// `condition`: an observer does not answer a window in which the condition of its codistribution exceeds this anywhere; 1e6 unless given.
+    /// `condition`: an observer does not answer a window in which the condition number of its codistribution exceeds this anywhere; 1e6 unless given.
     pub condition: f64,
 }
 
@@ -131,34 +131,34 @@ impl Default for Switch {
     }
 }
 
-/// A system that the readings may be of in some windows, and what is sought of it.
+/// A system that may explain the measurements in some windows, and its estimated states.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeSettings {
     /// `name`.
     pub name: String,
     /// `model`: as of the scene.
     pub model: PathBuf,
-    /// `estimate`, `known`, `inputs`, `bounds`: as of `[observer]`, and instead of those.
+    /// `estimate`: as of `[observer]`, and instead of it.
     pub estimate: Vec<String>,
-    /// What no column gives and is not sought.
+    /// `known`: values that no column gives and that are not estimated.
     pub known: BTreeMap<String, f64>,
     /// `inputs`: as of `[observer]`, and instead of those; none unless given.
     pub inputs: BTreeMap<String, String>,
-    /// Between what some of what is sought lies.
+    /// `bounds`: lower and upper bounds of estimated quantities, by name.
     pub bounds: BTreeMap<String, [f64; 2]>,
-    /// `guess`: where the search begins in any window; what is not given begins in the middle of its sample box.
+    /// `guess`: initial values of the search in any window; a state without one starts in the middle of its sample box.
     pub guess: BTreeMap<String, f64>,
 }
 
 /// A first guess.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Guess {
-    /// `guess`: a value for each state that is sought.
+    /// `guess`: a value for each estimated state.
     Values(BTreeMap<String, f64>),
-    /// `guess_off`: each state is off the truth by this part of it (0.1: ten percent more). Only where there is a
+    /// `guess_off`: each state is off the truth by this fraction of it (0.1: ten percent more). Only where there is a
     /// truth, in a simulation.
     Off(f64),
-    /// `"none"`: the readings of the first window give it. Only between two palms.
+    /// `"none"`: the measurements of the first window give it. Only between two palms.
     None,
     /// `"sample"`: the middle of the model's sample box.
     Sample,
@@ -174,13 +174,13 @@ pub enum Method {
     TrustRegion,
     /// `multiple-shooting`: the same error, from several states of the sample box, by segments that are joined in the end.
     MultipleShooting,
-    /// `integration`: the first guess, carried along by the model; the reference without observer.
+    /// `integration`: the first guess, integrated by the model; the reference without observer.
     Integration,
     /// `kalman`: the extended Kalman filter.
     Kalman,
     /// `unscented`: the unscented Kalman filter.
     Unscented,
-    /// `smoother`: the extended Kalman filter, corrected backwards by what was measured later.
+    /// `smoother`: the extended Kalman filter with a backward pass of smoothing.
     Smoother,
     /// `high-gain`: the high-gain observer.
     HighGain,
@@ -201,7 +201,7 @@ impl ObserverSettings {
         }
     }
 
-    /// The observer by multiple shooting.
+    /// The observer of multiple shooting.
     pub fn multiple_shooting(&self) -> MultipleShooting {
         MultipleShooting { window: self.window(WindowSearch::TrustRegion), shooting: self.shooting }
     }
@@ -212,8 +212,8 @@ impl ObserverSettings {
             method: search,
             window: self.window,
             steps: self.steps as u64,
-            blind: self.blind,
-            when_blind: self.when_blind,
+            unobservable_above: self.unobservable_above,
+            when_unobservable: self.when_unobservable,
         }
     }
 }
@@ -233,7 +233,7 @@ impl Method {
         }
     }
 
-    /// How it seeks the smallest error of a window; of a method that works by windows.
+    /// How it minimises the error of a window; of a method that works by windows.
     pub fn search(self) -> Option<WindowSearch> {
         match self {
             Method::Newton => Some(WindowSearch::Newton),
@@ -247,21 +247,21 @@ impl Method {
         }
     }
 
-    /// Whether it works by windows, with a verdict on each.
+    /// Whether it works by windows, with a test of each.
     pub fn is_by_windows(self) -> bool {
         self.search().is_some() || self == Method::MultipleShooting
     }
 }
 
-/// What to try many times over.
+/// Studies, which repeat the estimate many times.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Study {
-    /// `[study.noise]`: how the error grows with noise.
+    /// `[study.noise]`: the error as a function of the noise.
     pub noise: Option<NoiseStudy>,
-    /// `[study.basin]`: from which first guesses the search arrives.
+    /// `[study.basin]`: from which first guesses the search converges to the truth.
     pub basin: Option<BasinStudy>,
-    /// `[study.curvature]`: what palms of other curvatures tell.
+    /// `[study.curvature]`: the Cramér-Rao bounds with palms of other curvatures.
     pub curvature: Option<CurvatureStudy>,
 }
 
@@ -284,7 +284,7 @@ pub struct CurvatureStudy {
     pub orientations: Vec<f64>,
     /// `rates`: `omega0` at the start, in rad/s; each orientation begins with each rate.
     pub rates: Vec<f64>,
-    /// `noise`: the standard deviation of the contacts' readings, in m.
+    /// `noise`: the standard deviation of the contacts' measurements, in m.
     pub noise: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Where in the text of a scene each key and value stands, and what is wrong there in words.
+//! Where in the text of a scene each key and value stands, and the errors at these places as text.
 
 use palmistry_lang::{Code, Problem, nearest};
 use std::ops::Range;
@@ -38,7 +38,14 @@ impl<'a> Places<'a> {
         self.walk(place).map_or(self.top(), |entry| entry.key)
     }
 
-    /// The beginning of the text: where a key is marked that is not there.
+    /// Whether a table of the text has this key.
+    pub fn has(&self, table: &str, key: &str) -> bool {
+        let named = self.table.get_ref().iter().find(|(name, _)| name.get_ref().as_ref() == table);
+        let inner = named.and_then(|(_, value)| value.get_ref().as_table());
+        inner.is_some_and(|inner| inner.iter().any(|(name, _)| name.get_ref().as_ref() == key))
+    }
+
+    /// The start of the text, where missing keys are marked.
     fn top(&self) -> Range<usize> {
         0..usize::from(self.length > 0)
     }
@@ -90,7 +97,7 @@ impl<'a> Places<'a> {
         None
     }
 
-    /// What serde and the TOML reader find wrong, at its place, with what to do.
+    /// The error of serde or the TOML reader, at its place, with advice.
     pub fn explain(&self, error: &toml::de::Error) -> Problem {
         let message = error.message();
         let span = error.span().unwrap_or(self.top());
@@ -101,7 +108,7 @@ impl<'a> Places<'a> {
         };
         match (quoted.split_first(), message) {
             (Some((unknown, known)), m) if m.starts_with("unknown field") => {
-                // of a table that is read by hand the span is that of its header
+                // for a table that is read by hand the span is that of its header
                 let after = || self.key_within(unknown, &(span.start..self.length));
                 let place = self.key_within(unknown, &span).or_else(after).unwrap_or(span);
                 Problem::new(
@@ -157,7 +164,7 @@ const EXAMPLES: [(&str, &str); 20] = [
     ("points", "points = 21"),
 ];
 
-/// A message of serde's in words that are not Rust's.
+/// A message of serde's without Rust's terms.
 fn in_words(message: &str) -> String {
     if message == "wanted string or table" {
         return "this is no text, expected one in quotation marks".to_owned();
@@ -177,7 +184,7 @@ fn in_words(message: &str) -> String {
         ("path string", "a text"),
         ("string \"", "the text \""),
     ];
-    // only what serde writes, not what it quotes from the file
+    // only the part that serde writes, not its quotes from the file
     let quote = message.rfind("expected ").filter(|_| message.starts_with("invalid "));
     match quote {
         Some(at) => {

@@ -1,4 +1,4 @@
-//! What a scene says of a robot on uneven ground: `[robot]` and `[ground]`.
+//! A robot on uneven ground as a scene describes it: `[robot]` and `[ground]`.
 
 use super::simulated::{downwards, sample_times};
 use serde::Deserialize;
@@ -7,7 +7,7 @@ use serde::Deserialize;
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneRobot {
-    /// `wheels`: where wheels 1 and 2 are from the centre of mass, in its own frame, in m.
+    /// `wheels`: the positions of wheels 1 and 2 from the centre of mass, in the robot's frame, in m.
     pub wheels: [[f64; 2]; 2],
     /// `mass`, in kg.
     pub mass: f64,
@@ -44,7 +44,7 @@ pub struct SceneWave {
     pub phase: f64,
 }
 
-/// A robot that drives over uneven ground, and when it is read.
+/// A robot that drives over uneven ground, and the times of its measurements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulatedRobot {
     /// `duration`: the time of the last sample, in seconds.

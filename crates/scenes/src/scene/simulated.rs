@@ -1,4 +1,4 @@
-//! What is simulated, and for how long: a body and two palms (lengths in metres, masses in kilograms, angles in radians), or any system.
+//! The simulated motion: a body and two palms (lengths in metres, masses in kilograms, angles in radians), or any system.
 
 use palmistry_bodies::mechanics::moving::{Drive, Knots};
 use rand::{RngExt, SeedableRng};
@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// A body between palms, and when its contacts are read.
+/// A body between palms, and the times of its measurements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulated {
     /// `duration`: the time of the last sample, in seconds; the first is at zero. (With `rate`, the last sample is at
@@ -63,7 +63,7 @@ pub struct SimulatedSystem {
     pub duration: f64,
     /// `samples`, or what follows from `rate`: the number of samples, both ends included.
     pub samples: usize,
-    /// `[start]`: the value of each state at the first sample, and values of constants that are others than in the file.
+    /// `[start]`: the value of each state at the first sample, and of constants that differ from the file's.
     pub start: BTreeMap<String, f64>,
     /// `[inputs]`: functions of the time `t` in seconds, by the names of known signals or of parameters that they stand for.
     pub inputs: BTreeMap<String, String>,
@@ -106,7 +106,7 @@ pub(super) fn downwards() -> f64 {
     -9.81
 }
 
-/// A known body, of which it is asked whether it was read: `[[observer.library]]`.
+/// A known body that recognition compares with the measurements: `[[observer.library]]`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LibraryBody {
@@ -149,9 +149,9 @@ pub enum SceneOutline {
     },
     /// `arcs`: corners, counterclockwise, joined by arcs of one radius that bulge.
     Arcs {
-        /// Where they are.
+        /// Their positions.
         corners: Vec<[f64; 2]>,
-        /// Of all sides.
+        /// The radius of all sides.
         radius: f64,
     },
     /// `spline`: the closed cubic spline through three points at even angles, as in section 3.4 of the thesis.
@@ -164,7 +164,7 @@ pub enum SceneOutline {
     },
     /// `random-spline`: such a spline with radii drawn as in section 3.4.
     RandomSpline {
-        /// Where the draw begins.
+        /// The seed of the draw.
         seed: u64,
         /// How the curve's parameter grows from point to point; `uniform` unless given.
         #[serde(default)]
@@ -177,7 +177,7 @@ pub enum SceneOutline {
 pub struct Palms {
     /// `inertia`: the moments of inertia about the origin, in kg m^2.
     pub inertia: [f64; 2],
-    /// `prescribed` or `torques`: what moves them.
+    /// `prescribed` or `torques`: how they are moved.
     pub drive: Drive,
     /// `friction`: the coefficient of Coulomb friction at both contacts, which are on flat palms then; 0 unless given.
     pub friction: f64,

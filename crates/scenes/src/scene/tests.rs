@@ -44,8 +44,8 @@ guess = { r1 = 2.0, r2 = 2.0, omega0 = 0 }
 clamp = ["omega0"]
 window = 60
 steps = 4
-when_blind = "hold"
-blind = 0.5
+when_unobservable = "hold"
+unobservable_above = 0.5
 
 [observer.shooting]
 starts = 3
@@ -172,8 +172,8 @@ fn every_key_arrives_where_it_belongs() {
         clamp: vec!["omega0".to_owned()],
         window: 60,
         steps: 4,
-        when_blind: WhenUnobservable::Hold,
-        blind: 0.5,
+        when_unobservable: WhenUnobservable::Hold,
+        unobservable_above: 0.5,
         inherit: true,
         whole: false,
         bounds: BTreeMap::new(),
@@ -210,8 +210,11 @@ fn what_is_not_given_has_its_default() {
     assert_eq!(scene.sensor, Sensor::default());
     assert_eq!(scene.data, Data::default());
     assert_eq!(scene.observer.guess, Guess::Off(0.1));
-    assert_eq!((scene.observer.window, scene.observer.steps, scene.observer.blind), (80, 5, 1.0));
-    assert_eq!(scene.observer.when_blind, WhenUnobservable::Integrate);
+    assert_eq!(
+        (scene.observer.window, scene.observer.steps, scene.observer.unobservable_above),
+        (80, 5, 1.0)
+    );
+    assert_eq!(scene.observer.when_unobservable, WhenUnobservable::Integrate);
     assert_eq!(scene.study, Study::default());
 }
 
@@ -260,7 +263,7 @@ fn every_shape_can_be_written() {
     );
 }
 
-/// What is wrong is said, what is marked is the place, and the advice fits.
+/// The message, the marked place and the advice of each mistake are as expected.
 #[test]
 fn mistakes_are_shown_at_their_place() {
     for (name, from, to) in [
@@ -323,8 +326,8 @@ fn sample_times_are_even_or_have_the_jitter_asked_for() {
     assert_ne!(times, simulated.times(0.005, 2));
 }
 
-/// A record sampled with the jitter of figure 3.9b has no gap for rules that know of it, and one sample that is taken
-/// out at either side of two others is found out.
+/// A record sampled with the jitter of figure 3.9b has no gap for rules that know the jitter, and the removal of one sample at
+/// either side of two others is detected.
 #[test]
 fn the_rules_of_a_scene_cope_with_its_jitter() {
     let text = SHORT.replace("[observer]", "[sensor]\njitter = 0.005\n[observer]");

@@ -10,9 +10,9 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Family {
-    /// Harmonics 2 to 6, drawn evenly up to half of what convexity leaves to one alone.
+    /// Harmonics `k` from 2 to 6, each coefficient drawn evenly up to `1/k` of the largest that is convex alone.
     Harmonics,
-    /// The same, the centre of mass off the centroid by up to 0.3 of the mean radius.
+    /// The same, with the centre of mass off the centroid by up to 0.3 of the mean radius.
     OffCentre,
     /// Section 3.4: closed splines through three points, the parameter even.
     Uniform,
@@ -21,7 +21,7 @@ pub enum Family {
 }
 
 impl Family {
-    /// As a scene says it.
+    /// Its name in a scene.
     pub fn name(self) -> &'static str {
         match self {
             Family::Harmonics => "harmonics",

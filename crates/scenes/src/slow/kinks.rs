@@ -1,41 +1,41 @@
-//! Kinks of the curvature that are themselves found, for bodies whose harmonics fall slowly: closed splines have one where two of their pieces meet.
+//! Estimated kinks of the curvature, for bodies whose harmonics fall slowly: closed splines have one where two of their pieces meet.
 //!
-//! Harmonics up to some hundred tell roughly where: jumps of the third derivative are the peaks of the fourth, summed with a window. One kink after the other is taken from the highest peak of what the
-//! ones before leave, and all of it is explained at once. What is free afterwards are few harmonics, and three jumps and an angle a kink, instead of hundreds of harmonics. It is a model like any
-//! other: that a kink is found does not say that the body has one there.
+//! Harmonics up to some hundred locate them roughly: jumps of the third derivative are the peaks of the fourth, summed with a window. One kink after the other is taken from the highest peak of the residual of
+//! the ones before, and all of them are fitted at once. The free parameters are then a few harmonics, and three jumps and an angle a kink, instead of hundreds of harmonics. It is a model like any
+//! other: a kink in the fit does not prove that the body has one there.
 
 use super::found::{EXACT, SlowShape};
+use super::measurements::SlowMeasurements;
 use super::outline::{Kink, OF_KINK, Outline};
-use super::readings::SlowMeasurements;
 use super::together::{Point, Together};
 use palmistry_bodies::shape::SupportSeries;
 use std::f64::consts::{PI, TAU};
 
-/// Harmonics that are asked for kinks have at least this order; fewer fall fast by themselves.
+/// Kinks are sought only beside harmonics of at least this order; a body that needs fewer has no need of kinks.
 const SLOWLY: usize = 48;
 
-/// What is left in so many deviations needs no kinks.
+/// A residual below this many deviations needs no kinks.
 const NOTHING_LEFT: f64 = 100.0;
 
-/// Kinks at most, and how many in a row may tell nothing.
+/// Kinks at most, and how many in a row may bring no improvement.
 const MOST: usize = 6;
 const PATIENCE: usize = 2;
 
-/// Another kink, or more harmonics, have to lower what is left by this part of it.
+/// Another kink, or more harmonics, have to lower the residual to this fraction of it.
 const LOWER: f64 = 0.5;
 
 /// The harmonics that are free while kinks are looked for, and afterwards.
 const FIRST_ORDER: usize = 32;
 const ORDERS: [usize; 3] = [48, 64, 96];
 
-/// Lower orders at which peaks are looked for, too, and what is left, in parts of that of harmonics, where none is asked any more.
+/// Lower orders at which peaks are also looked for; and the residual, relative to that of harmonics, below which the search ends.
 const SPECTRA: [usize; 2] = [96, 64];
 const FOUND: f64 = 1e-2;
 
 /// Steps for each of these.
 const STEPS: usize = 12;
 
-/// What is left of a contact, in deviations.
+/// The root mean square residual of a contact, in deviations.
 fn left(at: &Point, rows: usize) -> f64 {
     (at.left.rows(0, 2 * rows).norm_squared() / (2 * rows) as f64).sqrt()
 }
@@ -67,13 +67,13 @@ fn highest(series: &SupportSeries, known: &[Kink]) -> Kink {
     Kink { jumps: [PI * height / area, 0.0, 0.0], angle }
 }
 
-/// A shape again with kinks of its curvature, where harmonics alone leave something of readings that are exact; else as it is.
+/// The shape with kinks of its curvature, where harmonics alone leave a residual of exact measurements; else unchanged.
 pub(super) fn with_kinks(
-    readings: &SlowMeasurements,
+    measurements: &SlowMeasurements,
     found: SlowShape,
     interrupt: &dyn Fn() -> bool,
 ) -> SlowShape {
-    let together = Together::of(readings);
+    let together = Together::of(measurements);
     let is_asked = !together.is_noisy()
         && found.kinks.is_empty()
         && found.order >= SLOWLY
@@ -87,7 +87,7 @@ pub(super) fn with_kinks(
     better.unwrap_or(found)
 }
 
-/// The best shape with kinks, over series of several orders that tell where they are: the highest of few readings follow these more than the body.
+/// The best shape with kinks, over series of several orders that locate them: the highest orders follow few measurements more than the body.
 fn search(together: &Together<'_>, found: &SlowShape, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
     let mut best: Option<SlowShape> = None;
     let lower = SPECTRA.into_iter().filter(|order| *order < found.order);
@@ -113,7 +113,7 @@ fn search(together: &Together<'_>, found: &SlowShape, interrupt: &dyn Fn() -> bo
     best
 }
 
-/// Kinks from the peaks of a series, one after the other, and then as many harmonics as tell something.
+/// Kinks from the peaks of a series, one after the other, and then as many harmonics as lower the residual.
 fn from_peaks(
     together: &Together<'_>,
     series: &SupportSeries,

@@ -21,12 +21,12 @@ impl<'a> Stencil<'a> {
         self.first..self.first + self.times.len()
     }
 
-    /// What each sample is worth for the value at a time (Lagrange).
+    /// The weight of each sample in the value at a time (Lagrange).
     pub fn value_weights(&self, time: f64) -> Vec<f64> {
         self.weights(time).0
     }
 
-    /// What each sample is worth for the slope there.
+    /// The weight of each sample in the slope there.
     pub fn slope_weights(&self, time: f64) -> Vec<f64> {
         self.weights(time).1
     }

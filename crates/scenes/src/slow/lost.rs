@@ -1,22 +1,22 @@
-//! Poses that a search loses at folds, found again.
+//! Finds again the poses that a search loses at folds.
 //!
-//! A body that is led past a fold has two poses near it, and while the shape is still off, the one in which it lay may be no minimum at all: then the sample's pose slides into another one, what is left of its contacts
-//! is as large as the body, and no step of the search leads back. Where few samples are off by more than chance the others are explained without them, and they are asked again: the poses
+//! A body that is led past a fold has two poses near it, and while the shape is still off, the one in which it lay may be no minimum at all: then the sample's pose slides into another one, the residual of its contacts
+//! is as large as the body, and no step of the search leads back. Where few samples are off by more than chance the others are fitted without them, and the lost ones are tried again: at the poses
 //! next to those of the samples beside, and all others.
 
 use super::together::{Point, Together};
 use palmistry_bodies::mechanics::resting::stable_poses;
 use std::f64::consts::{PI, TAU};
 
-/// A sample is lost where a contact is off by so many deviations, by so many times what is left of most, and by this part of the mean contact.
+/// A sample is lost where a contact is off by this many deviations, by this many times the median residual, and by this fraction of the mean contact.
 const LOST: f64 = 6.0;
 const BEYOND_MOST: f64 = 5.0;
 const BEYOND_SIZE: f64 = 2e-3;
 
-/// More than this part of all samples is another motion and no lost pose.
+/// If more than this fraction of all samples is off it is another motion, not lost poses.
 const FEW: f64 = 0.1;
 
-/// So often it is tried.
+/// The number of attempts.
 const TRIED: usize = 4;
 
 impl Together<'_> {
@@ -53,7 +53,7 @@ impl Together<'_> {
         if lost.len() as f64 > FEW * rows as f64 { Vec::new() } else { lost }
     }
 
-    /// All samples at a shape, the lost ones in the stable poses that leave least.
+    /// All samples at a shape, the lost ones in the stable poses with the least residual.
     fn with_poses(&self, at: &Point, lost: &[usize]) -> Option<Point> {
         let outline = self.outline(&at.coefficients);
         let support = |angle: f64| {
@@ -64,12 +64,12 @@ impl Together<'_> {
         for &row in lost {
             let off = |phi0: f64| -> f64 {
                 let s = self.contacts(row, &self.touched(row, phi0, &outline));
-                (0..2).map(|i| (self.readings.contacts[row][i] - s[i]).powi(2)).sum()
+                (0..2).map(|i| (self.measurements.contacts[row][i] - s[i]).powi(2)).sum()
             };
             let beside = near[row.max(1) - 1];
             // by the shorter way round
             let turned = |pose: f64| pose + ((beside - pose) / TAU).round() * TAU;
-            let all = stable_poses(&support, self.readings.palms[row]).into_iter().map(turned);
+            let all = stable_poses(&support, self.measurements.palms[row]).into_iter().map(turned);
             let led = [Some(beside), near.get(row + 1).copied()]
                 .into_iter()
                 .flatten()

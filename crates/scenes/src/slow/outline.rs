@@ -1,14 +1,14 @@
-//! A support function whose curvature has kinks: a Fourier polynomial, and a tail that a few jumps of its higher derivatives tell.
+//! A support function whose curvature has kinks: a Fourier polynomial, and a tail determined by a few jumps of its higher derivatives.
 //!
-//! A periodic function that is smooth but for jumps `J_m` of its `m`th derivative at an angle `t` has the Fourier coefficients `sum J_m e^(-ikt)/(2 pi (ik)^(m+1))` beyond those of what is
-//! smooth. For one jump of 1 they add up to `-(2 pi)^m/(m+1)! B_(m+1)(x)` with Bernoulli's polynomials, `x` the part of a turn since the jump. Splines have jumps of the third derivative and of all
-//! higher ones where their pieces meet; three of them leave coefficients that fall by `k^-7`. The harmonics that are free are taken out of the tail, so that both say different things.
+//! A periodic function that is smooth except for jumps `J_m` of its `m`th derivative at an angle `t` has the Fourier coefficients `sum J_m e^(-ikt)/(2 pi (ik)^(m+1))` beyond those of its smooth
+//! part. For one jump of 1 they add up to `-(2 pi)^m/(m+1)! B_(m+1)(x)` with Bernoulli's polynomials, `x` the fraction of a turn since the jump. Splines have jumps of the third derivative and of all
+//! higher ones where their pieces meet; three of them leave coefficients that fall by `k^-7`. The free harmonics are removed from the tail, so that both are independent.
 
 use nalgebra::DMatrix;
 use palmistry_bodies::shape::SupportSeries;
 use std::f64::consts::{PI, TAU};
 
-/// Jumps that are sought at one angle: of the third derivative and the two after it.
+/// Jumps that are estimated at one angle: of the third derivative and the two after it.
 const JUMPS: usize = 3;
 
 /// Coefficients of a kink: its jumps and its angle.
@@ -29,7 +29,7 @@ pub(super) struct Outline {
     pub kinks: Vec<Kink>,
 }
 
-/// Bernoulli's polynomials of the degrees 0 to 6, at a part of a turn.
+/// Bernoulli's polynomials of the degrees 0 to 6, at a fraction of a turn.
 fn bernoulli(x: f64) -> [f64; 7] {
     let square = x * x;
     [
@@ -53,7 +53,7 @@ fn integrated(n: usize, sine: f64, cosine: f64) -> f64 {
     }
 }
 
-/// Of a jump by 1 of the derivative `n - 1` at the angle 0, what is beyond some harmonics, at `n`. There is none at zero, a point mass.
+/// For a unit jump of the derivative `n - 1` at the angle 0, the part beyond the free harmonics, at index `n`. Index zero, a point mass, has none.
 fn tails(angle: f64, order: usize) -> [f64; 7] {
     let polynomials = bernoulli((angle / TAU).rem_euclid(1.0));
     let mut found = [0.0; 7];
@@ -76,7 +76,7 @@ fn tails(angle: f64, order: usize) -> [f64; 7] {
     found
 }
 
-/// [`SupportSeries::support`], with two sines for all harmonics together: a search asks it some millions of times. Each is off by no more than `k` roundings.
+/// [`SupportSeries::support`], with two sines for all harmonics together: a search evaluates it some millions of times. Each is off by no more than `k` roundings.
 fn summed(series: &SupportSeries, angle: f64) -> [f64; 4] {
     let mut value = [series.mean, 0.0, 0.0, 0.0];
     let (step_sine, step_cosine) = angle.sin_cos();
@@ -119,7 +119,7 @@ impl Outline {
         value
     }
 
-    /// The derivatives of `[r, r', r'']` by the coefficients; the fourth is not meant.
+    /// The derivatives of `[r, r', r'']` by the coefficients; the fourth entry is unused.
     pub fn basis(&self, angle: f64) -> Vec<[f64; 4]> {
         let mut basis = SupportSeries::basis(angle, self.order());
         for kink in &self.kinks {
@@ -133,7 +133,7 @@ impl Outline {
         basis
     }
 
-    /// The series with the first harmonics of its tail, as many as are told.
+    /// The series with the first harmonics of its tail, up to the given order.
     pub fn expanded(&self, order: usize) -> SupportSeries {
         let mut coefficients = self.series.coefficients();
         coefficients.resize(1 + 2 * order.max(self.order()), 0.0);
@@ -189,7 +189,7 @@ mod tests {
                 assert!((whole[times] - summed[times]).abs() < most, "{angle} {times}: {whole:?} {summed:?}");
             }
         }
-        // the third derivative jumps by what the kink says, the others pass
+        // the third derivative jumps by the kink's jump, the others are continuous
         let [before, after] = [0.7 - 1e-9, 0.7 + 1e-9].map(|angle| outline.support(angle));
         assert!((after[3] - before[3] - 0.3).abs() < 1e-7 && (after[2] - before[2]).abs() < 1e-8);
     }

@@ -1,8 +1,8 @@
-//! Segments as the thesis arranges them (section 3.7): patches of the radius function, and the errors 3.48 and 3.49. For comparison; nothing is found by them.
+//! Segments as the thesis arranges them (section 3.7): patches of the radius function, and the errors 3.48 and 3.49. For comparison; no estimate uses them.
 
 use super::closure::touched;
+use super::measurements::SlowMeasurements;
 use super::quadrature::SlowTrack;
-use super::readings::SlowMeasurements;
 use super::segments::FoundJump;
 use super::thesis::{ThesisMethod, by_thesis};
 use std::f64::consts::TAU;
@@ -30,7 +30,7 @@ impl Arrangement {
     }
 }
 
-/// The radius function on a range of directions, linear between what was touched (the thesis takes a spline: at its samples that is the same).
+/// The radius function on a range of directions, linear between touched ones (the thesis takes a spline: at its samples that is the same).
 struct Patch {
     /// Directions that increase, and the radii there.
     points: Vec<[f64; 2]>,
@@ -62,7 +62,7 @@ fn patches(path: &[[f64; 2]]) -> Vec<Patch> {
     all
 }
 
-/// 3.48 over a whole turn. Patches are told by directions that go on past a turn.
+/// 3.48 over a whole turn. Patches are distinguished by directions that go on past a turn.
 fn area(patches: &[Patch]) -> f64 {
     let at = |i: usize| TAU * i as f64 / DIRECTIONS as f64;
     let mut total = 0.0;
@@ -87,12 +87,12 @@ fn squared(times: &[f64], values: &[f64]) -> f64 {
 
 /// A track cut at jumps, and the thesis's way restarted there from the same radii and orientations.
 pub(super) fn arrangements(
-    readings: &SlowMeasurements,
+    measurements: &SlowMeasurements,
     track: &SlowTrack,
     jumps: &[FoundJump],
 ) -> [Arrangement; 2] {
     let mut ends: Vec<usize> = jumps.iter().map(|jump| jump.row).collect();
-    ends.push(readings.rows());
+    ends.push(measurements.rows());
     let mut of_both = [Vec::new(), Vec::new()];
     let none = Arrangement { patches: 0, area: 0.0, force: 0.0, contact: 0.0 };
     let mut found = [none; 2];
@@ -103,7 +103,7 @@ pub(super) fn arrangements(
         if rows.len() < 2 {
             continue;
         }
-        let segment = readings.part(&rows);
+        let segment = measurements.part(&rows);
         let own = SlowTrack {
             radii: track.radii[rows.clone()].to_vec(),
             phi0: track.phi0[rows.clone()].to_vec(),
@@ -113,7 +113,7 @@ pub(super) fn arrangements(
         restarted.track.phi0.iter_mut().for_each(|phi0| *phi0 += own.phi0[0]);
         found[1].force += squared(&segment.times, &restarted.force_error);
         found[1].contact += squared(&segment.times, &restarted.contact_error);
-        // 3.38 of what was found; 3.39 vanishes whatever the radii, since d_i come from the readings by 3.18 and 3.19
+        // 3.38 of the estimate; 3.39 vanishes whatever the radii, since d_i come from the measurements by 3.18 and 3.19
         let force: Vec<f64> = (0..rows.len())
             .map(|row| {
                 let at = segment.sampled(row);

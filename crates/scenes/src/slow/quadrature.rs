@@ -1,29 +1,29 @@
-//! Shape and motion by integrals of the readings: everything from one constant, with no derivative of a reading and no division by what may vanish.
+//! Shape and motion by integrals of the measurements: everything from one constant, with no derivative of a measurement and no division by a quantity that may vanish.
 //!
-//! Contact forces do no work on a body that does not move along them, so that the height of the centre of mass changes by what the palms' own motion lifts: by `A/sin phi2`
-//! times the lever `s1` at palm 1, `B/sin phi2` times `s2` at palm 2, in parts of the weight. The centre of mass lies on the vertical through the centre of rotation
-//! (3.27). Height and side give both radii. What is left is the turn: `r_i' + d_i (w_i - phi0') = 0` is linear in `phi0'`, worth `d_i` at palm `i`, and nothing is divided by
+//! Contact forces do no work on a body that does not move along them, so that the height of the centre of mass changes by the lift of the palms' own motion: by `A/sin phi2`
+//! times the lever `s1` at palm 1, `B/sin phi2` times `s2` at palm 2, relative to the weight. The centre of mass lies on the vertical through the centre of rotation
+//! (3.27). Height and side give both radii. The turn remains: `r_i' + d_i (w_i - phi0') = 0` is linear in `phi0'`, weighted by `d_i` at palm `i`, and nothing is divided by
 //! it: about every sample a polynomial is fitted to all equations of its neighbours, in which those with a large `d_i` count most.
 
 use super::local::{derivative, integral};
-use super::readings::{Sampled, SlowMeasurements};
+use super::measurements::{Sampled, SlowMeasurements};
 use nalgebra::{DMatrix, DVector, Dyn, SVD};
 use palmistry_math::number::MOST_ITERATIONS;
 
-/// The polynomials through samples that are exact.
+/// The number of points of polynomials through exact samples.
 const POINTS: usize = 14;
 
-/// Samples about one, and the degree, of the fit of the rate: exact readings, and noisy ones.
+/// Samples about one, and the degree, of the fit of the rate: exact measurements, and noisy ones.
 const EXACT: [usize; 2] = [15, 10];
 const NOISY_DEGREE: usize = 2;
 
-/// So many samples smooth errors of this part of the mean contact. What a polynomial misses grows with the cube of their number, and what errors leave falls with its power 3/2.
+/// This many samples smooth errors of this fraction of the mean contact. The truncation error of a polynomial grows with the cube of their number, and the noise falls with its power 3/2.
 const NOISY_SAMPLES: f64 = 9.0;
 const NOISE: f64 = 7e-4;
 const NOISE_POWER: f64 = 0.22;
 const MOST_SAMPLES: f64 = 41.0;
 
-/// Beyond this part of the mean contact the noise is what a polynomial has to smooth.
+/// Noise above this fraction of the mean contact is smoothed by a polynomial.
 const IS_NOISY: f64 = 1e-7;
 
 /// Shape at the contacts and motion, sample by sample. SI units.
@@ -37,24 +37,24 @@ pub struct SlowTrack {
     pub height: Vec<f64>,
 }
 
-/// What of the quadrature does not depend on the constant.
+/// The part of the quadrature that does not depend on the constant.
 #[derive(Clone, Debug)]
 pub(super) struct Quadrature {
     sampled: Vec<Sampled>,
-    /// The height of the centre of mass over that at the first sample.
+    /// The height of the centre of mass above that at the first sample.
     pub lifted: Vec<f64>,
     pub fit: [usize; 2],
 }
 
 impl Quadrature {
-    pub fn of(readings: &SlowMeasurements) -> Quadrature {
-        let sampled: Vec<Sampled> = (0..readings.rows()).map(|row| readings.sampled(row)).collect();
+    pub fn of(measurements: &SlowMeasurements) -> Quadrature {
+        let sampled: Vec<Sampled> = (0..measurements.rows()).map(|row| measurements.sampled(row)).collect();
         let lift: Vec<f64> = sampled.iter().map(Sampled::lift).collect();
-        let noise = readings.sigma / readings.scale();
+        let noise = measurements.sigma / measurements.scale();
         let noisy = noise > IS_NOISY;
         let samples = NOISY_SAMPLES * (noise / NOISE).powf(NOISE_POWER);
         let samples = 2 * (samples.clamp(5.0, MOST_SAMPLES) / 2.0) as usize + 1;
-        let lifted = integral(&readings.times, &lift, if noisy { 2 } else { POINTS });
+        let lifted = integral(&measurements.times, &lift, if noisy { 2 } else { POINTS });
         Quadrature { sampled, lifted, fit: if noisy { [samples, NOISY_DEGREE] } else { EXACT } }
     }
 
@@ -86,11 +86,11 @@ impl Quadrature {
         SlowTrack { phi0: integral(times, &rate, points), radii, height }
     }
 
-    /// The body's rate: about each sample the polynomial `p` that explains best `d_i p = r_i' + d_i w_i` of the samples about it.
+    /// The body's rate: about each sample the polynomial `p` that fits best `d_i p = r_i' + d_i w_i` of the samples about it.
     fn rate(&self, times: &[f64], radii: &[[f64; 2]], d: &[[f64; 2]]) -> Vec<f64> {
         let n = times.len();
         let [window, degree] = [self.fit[0].min(n), self.fit[1].min(n.saturating_sub(1))];
-        // where readings are noisy a radius is differentiated by a polynomial of low degree over as many samples
+        // where measurements are noisy a radius is differentiated by a polynomial of low degree over as many samples
         let slopes = [0, 1].map(|i: usize| {
             let column: Vec<f64> = radii.iter().map(|r| r[i]).collect();
             if self.fit[1] < 4 {
@@ -136,7 +136,7 @@ fn decomposed(matrix: DMatrix<f64>) -> Option<SVD<f64, Dyn, Dyn>> {
     is_finite.then(|| matrix.try_svd(true, true, f64::EPSILON, MOST_ITERATIONS))?
 }
 
-/// Slopes of a noisy column: of the parabola that fits best over so many samples.
+/// Slopes of a noisy column: of the best-fitting parabola over so many samples.
 fn smoothed_slopes(times: &[f64], column: &[f64], window: usize) -> Vec<f64> {
     let n = times.len();
     (0..n)
@@ -153,6 +153,6 @@ fn smoothed_slopes(times: &[f64], column: &[f64], window: usize) -> Vec<f64> {
 }
 
 /// Shape and motion by quadrature, from the height of the centre of mass at the first sample.
-pub fn by_quadrature(readings: &SlowMeasurements, height: f64) -> SlowTrack {
-    Quadrature::of(readings).track(&readings.times, height)
+pub fn by_quadrature(measurements: &SlowMeasurements, height: f64) -> SlowTrack {
+    Quadrature::of(measurements).track(&measurements.times, height)
 }

@@ -1,13 +1,13 @@
-//! A scene of slow motion, simulated or recorded, and what every way makes of its readings.
+//! A scene of slow motion, simulated or recorded, and the answers of every method.
 
 use super::found::{EXACT, SlowShape};
 use super::keys::COLUMNS;
 use super::kinks::with_kinks;
-use super::ladder::Orders;
 use super::local::derivative;
+use super::measurements::SlowMeasurements;
+use super::orders::Orders;
 use super::patches::{Arrangement, arrangements};
 use super::quadrature::{SlowTrack, by_quadrature};
-use super::readings::SlowMeasurements;
 use super::scene::SlowScene;
 use super::segments::{FoundJump, found_jumps, from_segments};
 use super::sequence::with_poses_and_jumps;
@@ -27,7 +27,7 @@ use std::f64::consts::{PI, TAU};
 use std::path::Path;
 use std::time::Instant;
 
-/// What was simulated.
+/// The simulated body and motion.
 #[derive(Clone, Debug)]
 pub struct SlowTruth {
     /// The body.
@@ -36,58 +36,58 @@ pub struct SlowTruth {
     pub trajectory: Trajectory,
 }
 
-/// A scene with its readings.
+/// A scene with its measurements.
 #[derive(Clone, Debug)]
 pub struct SlowExperiment {
     /// The scene.
     pub scene: SlowScene,
-    /// None where readings are recorded.
+    /// None where measurements are recorded.
     pub truth: Option<SlowTruth>,
-    /// What the palms read.
-    pub readings: SlowMeasurements,
+    /// The measurements.
+    pub measurements: SlowMeasurements,
 }
 
-/// How far a track is from the truth: the greatest error of a support radius, in m, and of the orientation, in rad.
+/// The error of a track: the greatest error of a support radius, in m, and of the orientation, in rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackError {
     /// In m.
     pub radius: f64,
-    /// In radians, the frame of the body turned so that it is least.
+    /// In radians, with the frame of the body turned so that it is least.
     pub phi0: f64,
 }
 
-/// What all ways make of the readings.
+/// The answers of all methods.
 #[derive(Clone, Debug)]
 pub struct SlowAnswers {
-    /// All readings at once, nothing known; none where no start could be followed.
+    /// The batch estimate of all measurements, with no prior knowledge; none where no start could be followed.
     pub together: Option<SlowShape>,
-    /// Whether it explains the readings.
+    /// Whether it explains the measurements.
     pub explained: bool,
-    /// Where the body jumps in what was found.
+    /// The jumps of the body in the estimate.
     pub jumps: Vec<FoundJump>,
-    /// 3.48 and 3.49 of what was found, and of the thesis's way restarted at these jumps from the radii that were found.
+    /// 3.48 and 3.49 of the estimate, and of the thesis's method restarted at these jumps from the estimated radii.
     pub arrangements: Option<[Arrangement; 2]>,
-    /// Quadrature from the height at the first sample: the true one, or the one that was found.
+    /// Quadrature from the height at the first sample: the true one, or the estimated one.
     pub quadrature: Option<SlowTrack>,
-    /// The thesis's way from the radii at the first sample, by each method.
+    /// The thesis's method from the radii at the first sample, by each integrator.
     pub thesis: Vec<(ThesisMethod, ThesisTrack)>,
-    /// The same by the predictor and corrector, with the height one in a hundred off.
+    /// The same by the predictor and corrector, with an error of one percent in the height.
     pub misled: Option<ThesisTrack>,
-    /// The constants that zeros of 3.37's numerator tell.
+    /// The constants determined by zeros of 3.37's numerator.
     pub votes: Vec<Vote>,
-    /// Seconds that all at once, quadrature and the predictor and corrector took.
+    /// The seconds of the batch estimate, quadrature, and the predictor and corrector.
     pub seconds: [f64; 3],
 }
 
 impl SlowExperiment {
-    /// Simulates a scene, or takes its readings from a file: `data`, or else the one that the scene names.
+    /// Simulates a scene, or takes its measurements from a file: `data`, or else the one that the scene names.
     ///
     /// # Errors
     /// What is wrong with the body, the palms or the file.
     pub fn new(scene: SlowScene, data: Option<&Path>) -> Result<SlowExperiment, ReadError> {
         if let Some(file) = data.or(scene.record.as_deref()) {
-            let readings = recorded(&scene, file)?;
-            return Ok(SlowExperiment { scene, truth: None, readings });
+            let measurements = recorded(&scene, file)?;
+            return Ok(SlowExperiment { scene, truth: None, measurements });
         }
         let (Some(body), Some(palms)) = (&scene.body, &scene.palms) else {
             return Err(scene.error_at("title", "there is nothing to observe", "name a recording in [data]"));
@@ -116,19 +116,19 @@ impl SlowExperiment {
                 "both palms have to push: phi1, phi2 and pi - phi1 - phi2 positive",
             )
         })?;
-        let readings = readings_of(&trajectory, scene.noise, scene.resolution, scene.seed);
-        Ok(SlowExperiment { truth: Some(SlowTruth { shape: moved.shape, trajectory }), readings, scene })
+        let measurements = measurements_of(&trajectory, scene.noise, scene.resolution, scene.seed);
+        Ok(SlowExperiment { truth: Some(SlowTruth { shape: moved.shape, trajectory }), measurements, scene })
     }
 
-    /// The readings as a table that other programs, and this one, read.
+    /// The measurements as a table that this program and others can read.
     ///
     /// # Errors
     /// None that a simulation brings about.
     pub fn record(&self) -> Result<Record, palmistry_observe::RecordError> {
         let column = |name: &str, of: &dyn Fn(usize) -> f64| {
-            (name.to_owned(), (0..self.readings.rows()).map(of).collect::<Vec<f64>>())
+            (name.to_owned(), (0..self.measurements.rows()).map(of).collect::<Vec<f64>>())
         };
-        let r = &self.readings;
+        let r = &self.measurements;
         let columns = vec![
             column("phi1", &|i| r.palms[i][0]),
             column("phi2", &|i| r.palms[i][1]),
@@ -138,13 +138,14 @@ impl SlowExperiment {
         Record::new(r.times.clone(), columns)
     }
 
-    /// What all ways make of the readings; `done` is told of each step.
+    /// The answers of all methods; `done` is called after each step.
     pub fn run(&self, interrupt: &dyn Fn() -> bool, done: &dyn Fn(&'static str)) -> SlowAnswers {
-        let readings = &self.readings;
+        let measurements = &self.measurements;
         let timed = |seconds: &mut f64, begin: Instant| *seconds = begin.elapsed().as_secs_f64();
         let mut seconds = [f64::NAN; 3];
         let begin = Instant::now();
-        let together = from_any(readings, interrupt).map(|found| without_excess(readings, found, interrupt));
+        let together =
+            from_any(measurements, interrupt).map(|found| without_excess(measurements, found, interrupt));
         timed(&mut seconds[0], begin);
         done("batch least squares");
         let explained = together.as_ref().is_some_and(|found| found.explains(EXACT));
@@ -158,7 +159,7 @@ impl SlowExperiment {
             (None, None) => None,
         };
         let begin = Instant::now();
-        let quadrature = start.map(|(height, _)| by_quadrature(readings, height));
+        let quadrature = start.map(|(height, _)| by_quadrature(measurements, height));
         timed(&mut seconds[1], begin);
         done("quadrature");
         let mut thesis = Vec::new();
@@ -166,20 +167,20 @@ impl SlowExperiment {
         if let Some((height, radii)) = start {
             for method in ThesisMethod::ALL {
                 let begin = Instant::now();
-                thesis.push((method, by_thesis(readings, radii, method)));
+                thesis.push((method, by_thesis(measurements, radii, method)));
                 if method == ThesisMethod::PredictorCorrector {
                     timed(&mut seconds[2], begin);
                 }
             }
-            let off = readings.sampled(0).radii(1.01 * height);
-            misled = Some(by_thesis(readings, off, ThesisMethod::PredictorCorrector));
+            let off = measurements.sampled(0).radii(1.01 * height);
+            misled = Some(by_thesis(measurements, off, ThesisMethod::PredictorCorrector));
         }
         done("the thesis's way");
         let jumps = match &together {
-            Some(found) if explained => found_jumps(readings, found),
+            Some(found) if explained => found_jumps(measurements, found),
             _ => Vec::new(),
         };
-        let arrangements = together.as_ref().map(|found| arrangements(readings, &found.track, &jumps));
+        let arrangements = together.as_ref().map(|found| arrangements(measurements, &found.track, &jumps));
         SlowAnswers {
             explained,
             jumps,
@@ -188,37 +189,37 @@ impl SlowExperiment {
             quadrature,
             thesis,
             misled,
-            votes: votes(readings),
+            votes: votes(measurements),
             seconds,
         }
     }
 
-    /// How far a whole track is from the truth; none where this is not known, or the track stopped before.
+    /// The error of a whole track; none where the truth is not known, or the track stopped before.
     pub fn error(&self, track: &SlowTrack) -> Option<TrackError> {
         track_error(&self.truth.as_ref()?.trajectory, track)
     }
 }
 
-/// A shape from few starts; where none explains the readings one for all segments between jumps; where there is none either from all starts.
-fn from_any(readings: &SlowMeasurements, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
+/// A shape from few starts; where none explains the measurements, one for all segments between jumps; where that fails too, from all starts.
+fn from_any(measurements: &SlowMeasurements, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
     let explains = |found: &SlowShape| found.explains(EXACT);
-    from_nothing_briefly(readings, Orders::CHOSEN, interrupt)
+    from_nothing_briefly(measurements, Orders::CHOSEN, interrupt)
         .filter(explains)
-        .or_else(|| from_segments(readings, interrupt).filter(explains))
-        .or_else(|| from_nothing(readings, interrupt))
+        .or_else(|| from_segments(measurements, interrupt).filter(explains))
+        .or_else(|| from_nothing(measurements, interrupt))
 }
 
-/// What a search found, without harmonics, jumps and unevenness that the readings do not ask for.
+/// The estimate of a search, without harmonics, jumps and unevenness that the measurements do not require.
 pub(super) fn without_excess(
-    readings: &SlowMeasurements,
+    measurements: &SlowMeasurements,
     found: SlowShape,
     interrupt: &dyn Fn() -> bool,
 ) -> SlowShape {
-    let simpler = Together::of(readings).with_fewer_harmonics(found, interrupt);
-    with_poses_and_jumps(readings, with_kinks(readings, simpler, interrupt), interrupt)
+    let simpler = Together::of(measurements).with_fewer_harmonics(found, interrupt);
+    with_poses_and_jumps(measurements, with_kinks(measurements, simpler, interrupt), interrupt)
 }
 
-/// The errors of a track, which has to have all samples.
+/// The errors of a track, which needs all samples.
 pub(super) fn track_error(truth: &Trajectory, track: &SlowTrack) -> Option<TrackError> {
     let moments = &truth.moments;
     if track.radii.len() != moments.len() || moments.is_empty() {
@@ -239,8 +240,8 @@ pub(super) fn track_error(truth: &Trajectory, track: &SlowTrack) -> Option<Track
     (radius.is_finite() && phi0.is_finite()).then_some(TrackError { radius, phi0 })
 }
 
-/// What palms read of a motion: contacts with normal errors, rounded; the angles as they are.
-pub(super) fn readings_of(
+/// The measurements of a motion: contacts with normal errors, rounded; exact angles.
+pub(super) fn measurements_of(
     trajectory: &Trajectory,
     noise: f64,
     resolution: f64,
@@ -261,7 +262,7 @@ pub(super) fn readings_of(
     }
 }
 
-/// Readings of a file. Rates of the palms are differentiated: the angles are known well.
+/// The measurements of a file. The palms' rates are computed by differentiation: the angles are accurate.
 fn recorded(scene: &SlowScene, file: &Path) -> Result<SlowMeasurements, ReadError> {
     let names = COLUMNS.map(|name| scene.columns.get(name).map_or(name, String::as_str));
     let mut rules = scene.faults.clone();

@@ -12,23 +12,23 @@ use std::path::PathBuf;
 /// `[study]`: many bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlowStudy {
-    /// Of each family.
+    /// The number of bodies of each family.
     pub bodies: usize,
     /// The families.
     pub families: Vec<Family>,
     /// Numbers of samples.
     pub samples: Vec<usize>,
-    /// Resolutions of the contacts in m; zero for exact readings.
+    /// Resolutions of the contacts in m; zero for exact measurements.
     pub resolutions: Vec<f64>,
     /// The mean radius of the bodies, in m.
     pub size: f64,
-    /// How far the plan keeps from where palms pull, in radians, and how often it goes round.
+    /// The margin, in radians, that the plan keeps from where palms pull.
     pub margin: f64,
-    /// Of the plan of figure 3.14.
+    /// How often it goes round the plan of figure 3.14.
     pub rounds: f64,
-    /// The last order of harmonics, each a row of its own; none leaves it to the readings.
+    /// The last orders of harmonics, each a row of its own; where empty, the measurements choose it.
     pub orders: Vec<usize>,
-    /// Only bodies that jump at least and at most so often; without it those that never do.
+    /// The least and the greatest number of jumps of a body; without it only bodies that never jump.
     pub jumps: Option<[usize; 2]>,
 }
 
@@ -46,9 +46,9 @@ pub struct SlowPalms {
 pub struct SlowScene {
     /// `title`.
     pub title: String,
-    /// `seed`: where noise, jitter and random bodies begin.
+    /// `seed`: the seed of noise, jitter and random bodies.
     pub seed: u64,
-    /// The times of the samples in s; none where readings are recorded.
+    /// The times of the samples in s; none where measurements are recorded.
     pub times: Vec<f64>,
     /// `[body]`.
     pub body: Option<Body>,
@@ -60,9 +60,9 @@ pub struct SlowScene {
     pub resolution: f64,
     /// `[data] record`, relative to where the program runs.
     pub record: Option<PathBuf>,
-    /// What the recording calls the columns `phi1`, `phi2`, `s1`, `s2`.
+    /// The recording's names of the columns `phi1`, `phi2`, `s1`, `s2`.
     pub columns: BTreeMap<String, String>,
-    /// `[data] on_fault` and `spike`: how faulty rows of a recording are found, and what is done about them.
+    /// `[data] on_fault` and `spike`: how faulty rows of a recording are detected and treated.
     pub faults: FaultRules,
     /// `[study]`.
     pub study: Option<SlowStudy>,

@@ -1,13 +1,13 @@
-//! Runs in which the body jumps (section 3.7): one shape for all segments, with nothing known.
+//! Runs in which the body jumps (section 3.7): one shape for all segments, with no prior knowledge.
 //!
-//! The thesis restarts where the rate of the body is large, and then seeks two unknowns a segment. Here a stretch without a jump tells a shape; it grows on both sides as long as
-//! what is left of the readings is what their errors leave. Where it is more, the body lies in another stable pose of the very shape that was found: first the one to which it falls
-//! in the recovered potential, then each other, from each sample on. What remains is no unknown a segment, but a choice among few poses, and all readings are explained at once.
+//! The thesis restarts where the rate of the body is large, and then estimates two unknowns a segment. Here a stretch without a jump determines a shape; it grows on both sides as long as
+//! the residuals are those of the measurements' errors. Where they are larger, the body lies in another stable pose of the estimated shape: first the one to which it falls
+//! in the recovered potential, then each other, from each sample on. There is then no unknown a segment, but a choice among few poses, and all measurements are fitted at once.
 
 use super::found::{CERTAIN, EXACT, SlowShape};
-use super::ladder::Orders;
+use super::measurements::SlowMeasurements;
+use super::orders::Orders;
 use super::outline::Outline;
-use super::readings::SlowMeasurements;
 use super::start::from_nothing_briefly;
 use super::together::Together;
 use palmistry_bodies::mechanics::resting::stable_poses;
@@ -15,31 +15,31 @@ use palmistry_bodies::shape::SupportSeries;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-/// Parts of all samples among which one without a jump is looked for, and by which part of themselves they move on.
+/// Fractions of all samples among which a window without a jump is looked for, and the step of a window as a fraction of its length.
 const WINDOWS: [f64; 2] = [0.5, 0.3];
 const WINDOW_STEP: f64 = 0.34;
 
 /// The fewest samples of a window.
 const FEWEST: usize = 40;
 
-/// A stretch is explained well enough to grow where so little is left, in parts of the mean radius. Of bodies whose harmonics fall slowly each order leaves less than the one before, and all of
-/// them at every step would take most of the time; they are asked at the end, of all readings.
+/// A stretch is explained well enough to grow below this residual relative to the mean radius. For bodies whose harmonics fall slowly each order lowers the residual, and all of
+/// them at every step would take most of the time; they are tried at the end, for all measurements.
 const ENOUGH: f64 = 0.1 * EXACT;
 
 /// Samples by which a stretch grows at once.
 const BLOCK: usize = 10;
 
-/// So many places of a jump go on from what they leave at once to a search.
+/// This many places of a jump go on from their initial residual to a search.
 const TRIED: usize = 5;
 
-/// So many samples before a stretch ends are asked, too, where it does not grow: a small jump does not show at once.
+/// This many samples before the end of a stretch are tried, too, where it does not grow: a small jump does not show at once.
 const BACK: usize = 8;
 
-/// Between two samples the palms move in so many steps; a turn by more in one of them may be a jump.
+/// Between two samples the palms move in this many steps; a larger turn in one of them may be a jump.
 pub(super) const STEPS: usize = 24;
 pub(super) const JUMP: f64 = 0.04;
 
-/// Such a step is halved so often: what remains of the turn is a jump.
+/// Such a step is halved this often: a turn that remains is a jump.
 const HALVINGS: usize = 20;
 
 /// A jump that was found.
@@ -47,30 +47,30 @@ const HALVINGS: usize = 20;
 pub struct FoundJump {
     /// The first sample after it.
     pub row: usize,
-    /// The first and the last sample that may be the first one after it, as far as the measurements say: within five deviations.
+    /// The first and the last sample that may be the first one after it, within five deviations of the measurements.
     pub within: [usize; 2],
-    /// By how much the body turned, in radians: as it descends where that is foretold, else by the shorter way round.
+    /// By how much the body turned, in radians: as it descends where that is predicted, else by the shorter way round.
     pub turn: f64,
     /// Whether descent in the recovered potential leads there from the pose before.
     pub predicted: bool,
-    /// Whether the measurements need it: no shape within five deviations of the one that was found turns as far without a jump. Else a quick turn explains them as well.
+    /// Whether the measurements need it: no shape within five deviations of the estimate turns as far without a jump. Else a quick turn explains them as well.
     pub certain: bool,
 }
 
 /// A stretch of samples that one shape explains, on its way to all.
 struct Growth<'a> {
-    readings: &'a SlowMeasurements,
+    measurements: &'a SlowMeasurements,
     rows: Range<usize>,
     support: SupportSeries,
-    /// Of all samples; those outside of the stretch are not meant.
+    /// Of all samples; those outside of the stretch are unused.
     phi0: Vec<f64>,
     interrupt: &'a dyn Fn() -> bool,
 }
 
 impl Growth<'_> {
-    /// Grows until all is explained, or nothing goes on.
+    /// Grows until all is explained, or no further growth is possible.
     fn grow(&mut self) {
-        let last = self.readings.rows();
+        let last = self.measurements.rows();
         while !(self.interrupt)() {
             let ahead = self.rows.end < last && self.extend(true);
             let behind = self.rows.start > 0 && self.extend(false);
@@ -80,10 +80,10 @@ impl Growth<'_> {
         }
     }
 
-    /// The samples by which it would grow, in the order in which they are met.
+    /// The samples by which it would grow, in the order in which they are reached.
     fn block(&self, forwards: bool) -> Vec<usize> {
         if forwards {
-            (self.rows.end..(self.rows.end + BLOCK).min(self.readings.rows())).collect()
+            (self.rows.end..(self.rows.end + BLOCK).min(self.measurements.rows())).collect()
         } else {
             (self.rows.start.saturating_sub(BLOCK)..self.rows.start).rev().collect()
         }
@@ -93,8 +93,8 @@ impl Growth<'_> {
         let block = self.block(forwards);
         let (Some(first), Some(end)) = (block.first(), block.last()) else { return false };
         let whole = (*first).min(*end).min(self.rows.start)..(*first).max(*end).max(self.rows.end - 1) + 1;
-        let readings = self.readings.part(&whole);
-        let together = Together::of(&readings);
+        let measurements = self.measurements.part(&whole);
+        let together = Together::of(&measurements);
         let before = if forwards { self.rows.end - 1 } else { self.rows.start };
         let local = |row: usize| row - whole.start;
         let outline = Outline::of(&self.support.coefficients(), 0);
@@ -118,7 +118,7 @@ impl Growth<'_> {
             }
             tried.push(near);
         }
-        // another pose from some sample on, the most likely ones by what they leave before any search
+        // another pose from some sample on, the most likely ones by their residual before any search
         let mut others: Vec<(f64, Vec<f64>)> = Vec::new();
         let asked: Vec<usize> = if forwards {
             (before.saturating_sub(BACK).max(self.rows.start + 1)..whole.end).collect()
@@ -135,7 +135,7 @@ impl Growth<'_> {
             };
             let beside = if forwards { row - 1 } else { row + 1 };
             let Some(continued) = tried.first().map(|near| near[local(beside)]) else { return false };
-            for pose in stable_poses(&support, self.readings.palms[row]) {
+            for pose in stable_poses(&support, self.measurements.palms[row]) {
                 // by the shorter way round
                 let pose = pose + ((continued - pose) / TAU).round() * TAU;
                 let near = tried.first().cloned().unwrap_or_else(|| known.clone());
@@ -155,7 +155,7 @@ impl Growth<'_> {
                 return self.take(whole, &found);
             }
         }
-        // more harmonics, where these do not do
+        // more harmonics, where the present ones do not suffice
         tried.extend(others.into_iter().take(2).map(|(_, near)| near));
         for near in &tried {
             if let Some(found) = self.explained(&together, near, false) {
@@ -185,11 +185,11 @@ impl Growth<'_> {
     }
 }
 
-/// Shape and motion of a run with jumps, nothing known: from windows without one. None where no window tells a shape; whether all readings are explained says
+/// Shape and motion of a run with jumps, with no prior knowledge: from windows without one. None where no window determines a shape; whether all measurements are explained says
 /// [`SlowShape::explains`], and a run that is explained only in part is not.
-pub fn from_segments(readings: &SlowMeasurements, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
-    let rows = readings.rows();
-    let together = Together::of(readings);
+pub fn from_segments(measurements: &SlowMeasurements, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
+    let rows = measurements.rows();
+    let together = Together::of(measurements);
     let mut best: Option<SlowShape> = None;
     let in_window = Orders { enough: ENOUGH, ..Orders::CHOSEN };
     for window in WINDOWS {
@@ -200,14 +200,14 @@ pub fn from_segments(readings: &SlowMeasurements, interrupt: &dyn Fn() -> bool) 
                 return best;
             }
             let stretch = start..start + width;
-            let Some(found) = from_nothing_briefly(&readings.part(&stretch), in_window, interrupt) else {
+            let Some(found) = from_nothing_briefly(&measurements.part(&stretch), in_window, interrupt) else {
                 continue;
             };
             if !found.explains(EXACT) {
                 continue;
             }
             let support = SupportSeries::of_coefficients(&found.shape.support.coefficients());
-            let mut growth = Growth { readings, rows: 0..0, support, phi0: vec![0.0; rows], interrupt };
+            let mut growth = Growth { measurements, rows: 0..0, support, phi0: vec![0.0; rows], interrupt };
             growth.take(stretch, &found);
             growth.grow();
             if growth.rows.len() < rows {
@@ -228,16 +228,16 @@ pub fn from_segments(readings: &SlowMeasurements, interrupt: &dyn Fn() -> bool) 
     best
 }
 
-/// A turn that remains however short the way of the palms is made.
+/// A turn that remains however small the palms' step is made.
 #[derive(Clone, Copy, Debug)]
 struct Fall {
-    /// Where the palms are when it begins, as a part of their way between two samples.
+    /// Where the palms are when it begins, as a fraction of their way between two samples.
     at: f64,
     /// The orientations before and after.
     turn: [f64; 2],
 }
 
-/// What remains of a turn between two positions of the palms, if most of it happens at once: a quick motion near a fold does not.
+/// The part of a turn between two positions of the palms that happens at once, if most of it does: a quick motion near a fold does not.
 fn fall(
     [mut low, mut high]: [f64; 2],
     [mut from, mut to]: [f64; 2],
@@ -255,11 +255,11 @@ fn fall(
     ((to - from).abs() > JUMP / 2.0).then_some(Fall { at: high, turn: [from, to] })
 }
 
-/// Places between two poses at which a potential is asked whether it bends downwards.
+/// Places between two poses at which the potential's curvature is tested for being negative.
 const BETWEEN: usize = 64;
 
-/// Whether the measurements say that a body falls between two poses. It does where the potential bends downwards somewhere between them: by how many of its own deviations it does so at
-/// most says how many deviations a shape that turns steadily is away at least.
+/// Whether the measurements show that a body falls between two poses. It does where the potential's curvature is negative somewhere between them: its largest distance from zero in its own
+/// deviations is the least distance, in deviations, of a shape that turns steadily.
 fn is_borne_out(together: &Together<'_>, found: &SlowShape, outline: &Outline, [from, to]: [f64; 2]) -> bool {
     (1..BETWEEN).any(|place| {
         let orientation = from + (to - from) * place as f64 / BETWEEN as f64;
@@ -276,18 +276,21 @@ pub(super) struct Between {
 
 impl Between {
     /// Between a sample and the one before.
-    pub fn before(readings: &SlowMeasurements, row: usize) -> Between {
-        Between { ends: [readings.palms[row - 1], readings.palms[row]], at: readings.part(&(row - 1..row)) }
+    pub fn before(measurements: &SlowMeasurements, row: usize) -> Between {
+        Between {
+            ends: [measurements.palms[row - 1], measurements.palms[row]],
+            at: measurements.part(&(row - 1..row)),
+        }
     }
 
-    /// The palms at a part of the way.
+    /// The palms at a fraction of the way.
     pub fn at(&mut self, part: f64) -> Together<'_> {
         let [from, to] = self.ends;
         self.at.palms = vec![[0, 1].map(|palm: usize| from[palm] + part * (to[palm] - from[palm]))];
         Together::of(&self.at)
     }
 
-    /// By how many samples the measurements leave open where a body falls: five deviations of the slope of the potential where the pose ends, over what the palms' way changes of it; all of them where the shape has no covariance.
+    /// The uncertainty, in samples, of where a body falls: five deviations of the slope of the potential where the pose ends, divided by its change over the palms' way; infinite where the shape has no covariance.
     fn spread(&mut self, fall: &Fall, found: &SlowShape, outline: &Outline) -> f64 {
         let pose = fall.turn[0];
         let mut slope = |part: f64| self.at(part).bent(0, pose, outline, &found.shape.covariance)[0];
@@ -297,13 +300,13 @@ impl Between {
     }
 }
 
-/// Where the body jumps in a track: between two samples the palms are moved on in small steps, and the recovered shape is led along.
-pub fn found_jumps(readings: &SlowMeasurements, found: &SlowShape) -> Vec<FoundJump> {
+/// The jumps of the body in a track: between two samples the palms are moved on in small steps, and the recovered shape follows.
+pub fn found_jumps(measurements: &SlowMeasurements, found: &SlowShape) -> Vec<FoundJump> {
     let outline = Outline::of(&found.shape.support.coefficients(), 0);
     let phi0 = &found.track.phi0;
     let mut all = Vec::new();
     for row in 1..phi0.len() {
-        let mut between = Between::before(readings, row);
+        let mut between = Between::before(measurements, row);
         let mut led = |at: f64, from: f64| between.at(at).pose(0, from, &outline, PI).map(|found| found.0);
         let (mut pose, mut falls, mut followed) = (phi0[row - 1], Vec::new(), true);
         for step in 1..=STEPS {
@@ -333,7 +336,7 @@ pub fn found_jumps(readings: &SlowMeasurements, found: &SlowShape) -> Vec<FoundJ
             within = [within[0].min(first), within[1].max(last.min(phi0.len() - 1))];
         }
         if !predicted {
-            // it was held against the measurements before, and stays only where they need it; two poses so near each other that nothing is sure to lie between are one
+            // the turn is already in the fit, and counts as a jump only where the measurements need it; two poses so near each other that nothing is sure to lie between are one
             let mut lies_between = |from: f64| {
                 is_borne_out(&between.at(1.0), found, &outline, [from, from + shorter(phi0[row] - from)])
             };
@@ -354,8 +357,8 @@ mod tests {
     use super::*;
     use crate::slow::{SlowExperiment, SlowScene};
 
-    /// A jump that the measurements need is certain, and lies between its own two samples; with a thousandth of a radius of uncertainty it is somewhere about them; where nothing is known of
-    /// the shape the body may as well have turned steadily.
+    /// A jump that the measurements need is certain, and lies between its own two samples; with a thousandth of a radius of uncertainty it is somewhere about them; where the shape is
+    /// unknown the body may as well have turned steadily.
     #[test]
     fn how_sure_a_jump_is_hangs_on_how_sure_the_shape_is() {
         let text = include_str!("../../../../proofs/moll2002/scenes/slow_jump.toml");
@@ -366,9 +369,9 @@ mod tests {
             let mut found = found.clone();
             let n = found.shape.covariance.nrows();
             found.shape.covariance = nalgebra::DMatrix::identity(n, n) * deviation.powi(2);
-            found_jumps(&experiment.readings, &found)
+            found_jumps(&experiment.measurements, &found)
         };
-        let sure = found_jumps(&experiment.readings, &found);
+        let sure = found_jumps(&experiment.measurements, &found);
         assert_eq!(sure.len(), 1);
         assert!(sure[0].certain && sure[0].predicted && sure[0].within == [sure[0].row; 2], "{sure:?}");
         let less = jumps(1e-3);
@@ -381,7 +384,7 @@ mod tests {
         // a triangle that has no inverse leaves no covariance
         let unknown = jumps(f64::INFINITY);
         assert!(
-            !unknown[0].certain && unknown[0].within == [1, experiment.readings.rows() - 1],
+            !unknown[0].certain && unknown[0].within == [1, experiment.measurements.rows() - 1],
             "{unknown:?}"
         );
     }

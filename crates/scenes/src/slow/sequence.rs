@@ -1,33 +1,33 @@
-//! In which pose the body lay at each sample, and where it jumped: both at once.
+//! The pose of the body at each sample, and its jumps, estimated together.
 //!
-//! A body lies in a minimum of its potential and is led along by the palms; where the minimum ends it falls, into the one to which descent leads. Readings with errors are explained by other
-//! poses almost as well now and then: of a body that is nearly its own mirror image, or near a fold, and a track that takes the pose of the least residual at each sample has turns there that
-//! no body makes. So the poses of all samples are chosen together. At a shape that was found each stable pose of each sample costs what its contacts leave, in deviations of the readings and
-//! of what the shape is not sure of; a step from one sample to the next costs nothing where descent leads from the one pose to the other, continuously or by a jump, and the square of five
+//! A body lies in a minimum of its potential and is led along by the palms; where the minimum ends it falls, into the one to which descent leads. Measurements with errors are sometimes explained by other
+//! poses almost as well: for a body that is nearly its own mirror image, or near a fold; and a track that takes the pose of the least residual at each sample has turns there that
+//! no body makes. So the poses of all samples are chosen together. At an estimated shape each stable pose of each sample costs the residual of its contacts, in deviations of the measurements and
+//! of the shape; a step from one sample to the next costs nothing where descent leads from the one pose to the other, continuously or by a jump, and the square of five
 //! deviations where it does not. The cheapest sequence is found by dynamic programming (R. Bellman 1957; A. Viterbi 1967), and the shape is fitted to it.
 //!
-//! A body whose pose has just ended at this shape may lie in it for some samples more at another one: such a pose is the flattest place that the contacts agree with, and costs by how many
-//! deviations the potential is steep there. The shape is fitted to the other samples then, with a potential that is just no longer steep there, and afterwards to all.
+//! A body whose pose has just ended at this shape may lie in it for some samples more at another one: such a pose is the flattest place that the contacts agree with, and costs the
+//! slope of the potential there, in deviations. The shape is fitted to the other samples then, with a potential that is just no longer steep there, and afterwards to all.
 //!
-//! What turns without being led there remains only where the readings pay for it. Whether another shape would explain them without is tried besides: a shape that was fitted to wrong poses holds on to
-//! them, so that samples about such a turn are left out of a fit, and asked again.
+//! A turn to which no descent leads remains only where the measurements pay for it. Another shape that explains them without it is tried as well: a shape that was fitted to wrong poses holds on to
+//! them, so that samples about such a turn are left out of a fit, and then tried again.
 
 use super::found::{CERTAIN, EXACT, SlowShape};
+use super::measurements::SlowMeasurements;
 use super::outline::Outline;
-use super::readings::SlowMeasurements;
 use super::segments::{Between, FoundJump, JUMP, STEPS, found_jumps};
 use super::together::{Held, Together};
 use palmistry_bodies::mechanics::resting::stable_poses;
 use palmistry_bodies::shape::Measured;
 use std::f64::consts::{PI, TAU};
 
-/// What a turn costs to which no descent leads.
+/// The cost of a turn to which no descent leads.
 const UNLED: f64 = CERTAIN * CERTAIN;
 
-/// So often a better sequence is looked for.
+/// A better sequence is looked for this often.
 const ROUNDS: usize = 8;
 
-/// So many ways are fitted in all: a fit of a long run takes seconds.
+/// The most fits in all: a fit of a long run takes seconds.
 const MOST_FITTED: usize = 60;
 
 /// Samples before and after a turn that are left out of a fit.
@@ -36,45 +36,45 @@ const ABOUT: [usize; 2] = [2, 6];
 /// Two jumps no farther apart than this may be a stretch in a wrong pose.
 const STRETCH: usize = 60;
 
-/// So often a shape is fitted without samples whose pose has ended before, until none has.
+/// A shape is fitted this often without samples whose pose has ended before, until none has.
 const ENDED_BEFORE: usize = 4;
 
 /// How far from where a pose ended it is looked for, in rad, and in how many places.
 const FARTHEST: f64 = 0.3;
 const PLACES: usize = 120;
 
-/// How exactly a slope is held, in deviations of its own.
+/// The standard deviation of a prescribed slope, in units of its own.
 const HELD: f64 = 0.1;
 
-/// A way that costs more than the cheapest by this is given up.
+/// A way that costs more than the cheapest by this is dropped.
 const HOPELESS: f64 = 10.0 * UNLED;
 
-/// By which part of a deviation's square the sum has to fall for a sequence to be better.
+/// The fraction of a deviation's square by which the sum has to fall for a sequence to be better.
 const BETTER: f64 = 1e-3;
 
-/// A track whose poses and jumps explain the readings together, with its shape.
+/// A track whose poses and jumps explain the measurements together, with its shape.
 pub(super) fn with_poses_and_jumps(
-    readings: &SlowMeasurements,
+    measurements: &SlowMeasurements,
     mut found: SlowShape,
     interrupt: &dyn Fn() -> bool,
 ) -> SlowShape {
     if !found.explains(EXACT) {
-        // nobody is told of its jumps
+        // its jumps are not reported
         return found;
     }
-    let together = Together::of(readings);
-    // exact readings leave what the shape's order does
+    let together = Together::of(measurements);
+    // the residual of exact measurements is that of the shape's order
     let sigma = found.sigma.max(found.rms_residual);
     let cost = |of: &SlowShape, jumps: &[FoundJump]| {
         let unled = jumps.iter().filter(|jump| !jump.predicted).count();
         of.shape.chi_square * (of.sigma / sigma).powi(2) + UNLED * unled as f64
     };
-    let mut jumps = found_jumps(readings, &found);
+    let mut jumps = found_jumps(measurements, &found);
     let mut least = cost(&found, &jumps);
     let mut fitted = 0;
     for _ in 0..ROUNDS {
         let mut better: Option<(f64, SlowShape, Vec<FoundJump>)> = None;
-        for way in ways(readings, &together, &found, &jumps) {
+        for way in ways(measurements, &together, &found, &jumps) {
             if interrupt() || fitted == MOST_FITTED {
                 break;
             }
@@ -83,7 +83,7 @@ pub(super) fn with_poses_and_jumps(
             if !other.explains(EXACT) {
                 continue;
             }
-            let others = found_jumps(readings, &other);
+            let others = found_jumps(measurements, &other);
             let its = cost(&other, &others);
             if its < least - BETTER && better.as_ref().is_none_or(|(cost, ..)| its < *cost) {
                 let is_led = others.iter().all(|jump| jump.predicted);
@@ -99,25 +99,25 @@ pub(super) fn with_poses_and_jumps(
     found
 }
 
-/// What a shape is fitted to before the sequence is asked anew.
+/// The samples and slopes of a fit that precedes a new sequence.
 #[derive(Default)]
 struct Way {
-    /// Samples that do not count.
+    /// Samples that are left out.
     left_out: Vec<usize>,
-    /// Slopes of the potential.
+    /// Prescribed slopes of the potential.
     held: Vec<Held>,
 }
 
 /// The ways that are tried: the shape as it is first; then without the samples about each turn to which nothing leads, and those between it and the jumps beside; and
 /// where the turn is small, with a potential that does not rise between its poses.
 fn ways(
-    readings: &SlowMeasurements,
+    measurements: &SlowMeasurements,
     together: &Together<'_>,
     found: &SlowShape,
     jumps: &[FoundJump],
 ) -> Vec<Way> {
     let outline = Outline::of(&found.shape.support.coefficients(), 0);
-    let rows = readings.rows();
+    let rows = measurements.rows();
     let mut ways = vec![Way::default()];
     if !found.kinks.is_empty() {
         // these are fitted elsewhere
@@ -136,7 +136,7 @@ fn ways(
             stretches.into_iter().map(|stretch| Way { left_out: stretch.collect(), held: Vec::new() }),
         );
         let last = found.track.phi0[jump.row - 1];
-        let from = led(&mut Between::before(readings, jump.row), last, &outline).to.unwrap_or(last);
+        let from = led(&mut Between::before(measurements, jump.row), last, &outline).to.unwrap_or(last);
         let turn = turned(found.track.phi0[jump.row] - from);
         if turn.abs() <= FARTHEST {
             let bent = |part: f64| {
@@ -155,7 +155,7 @@ fn ways(
     ways
 }
 
-/// The cheapest sequence at the shape that the samples tell which are not left out, and the shape along it; none where it is the sequence that there was.
+/// The cheapest sequence at the shape fitted to the samples that are not left out, and the shape along it; none where the sequence is unchanged.
 fn another(
     together: &Together<'_>,
     found: &SlowShape,
@@ -184,7 +184,7 @@ fn another(
                 .min_by(|a, b| bent(*a).value.abs().total_cmp(&bent(*b).value.abs()))
                 .unwrap_or(phi0[*row]);
             let Measured { value, deviation } = bent(flattest);
-            // the other way by a deviation: there is a pose beside then
+            // opposite by a deviation: there is a pose beside it then
             Held {
                 row: *row,
                 phi0: flattest,
@@ -204,7 +204,7 @@ fn places(phi0: f64) -> impl Iterator<Item = f64> {
     (0..=PLACES).map(move |at| phi0 + FARTHEST * (2.0 * at as f64 / PLACES as f64 - 1.0))
 }
 
-/// The shape that the other samples tell, with slopes of the potential that are held.
+/// The shape fitted to the other samples, with prescribed slopes of the potential.
 fn fitted_without(
     together: &Together<'_>,
     found: SlowShape,
@@ -235,9 +235,9 @@ fn turned(turn: f64) -> f64 {
 struct Node {
     pose: f64,
     cost: f64,
-    /// The place of the one before among those of its sample, and by how much the body turned from there.
+    /// The index of the node before among those of its sample, and by how much the body turned from there.
     before: (usize, f64),
-    /// Whether it has ended at this shape.
+    /// Whether the pose has ended at this shape.
     has_ended: bool,
 }
 
@@ -263,19 +263,19 @@ fn cheapest(
     sigma: f64,
     interrupt: &dyn Fn() -> bool,
 ) -> Option<Sequence> {
-    let readings = together.readings;
+    let measurements = together.measurements;
     let outline = Outline::of(&found.shape.support.coefficients(), 0);
     let support = |angle: f64| {
         let [radius, slope, second, _] = outline.support(angle);
         [radius, slope, second]
     };
     let covariance = &found.shape.covariance;
-    let mut all: Vec<Vec<Node>> = Vec::with_capacity(readings.rows());
-    for row in 0..readings.rows() {
+    let mut all: Vec<Vec<Node>> = Vec::with_capacity(measurements.rows());
+    for row in 0..measurements.rows() {
         if interrupt() {
             return None;
         }
-        let poses = stable_poses(&support, readings.palms[row]);
+        let poses = stable_poses(&support, measurements.palms[row]);
         let own = |pose: f64| together.surprise(row, pose, &outline, covariance, sigma);
         let Some(last) = all.last() else {
             let begin = found.track.phi0.first().copied().unwrap_or_default();
@@ -287,7 +287,7 @@ fn cheapest(
             all.push(poses.into_iter().map(first).collect());
             continue;
         };
-        let mut between = Between::before(readings, row);
+        let mut between = Between::before(measurements, row);
         let led: Vec<Led> = last.iter().map(|node| led(&mut between, node.pose, &outline)).collect();
         let stable = |pose: f64| -> Option<Node> {
             let from = |(place, (node, led)): (usize, (&Node, &Led))| {
@@ -344,7 +344,7 @@ fn led(between: &mut Between, from: f64, outline: &Outline) -> Led {
     Led { to: Some(pose), falls }
 }
 
-/// The shape along another track: fitted anew, or as it was where it has kinks.
+/// The shape along another track: fitted again, or as it was where it has kinks.
 fn along(
     together: &Together<'_>,
     found: &SlowShape,
@@ -362,10 +362,10 @@ fn along(
     for (row, pose) in phi0.into_iter().enumerate() {
         let touched = together.touched(row, pose, &outline);
         let contacts = together.contacts(row, &touched);
-        square += (0..2).map(|i| (contacts[i] - together.readings.contacts[row][i]).powi(2)).sum::<f64>();
+        square += (0..2).map(|i| (contacts[i] - together.measurements.contacts[row][i]).powi(2)).sum::<f64>();
         let radii = touched.map(|radius| radius[0]);
         (other.track.phi0[row], other.track.radii[row]) = (pose, radii);
-        other.track.height[row] = together.readings.sampled(row).height(radii);
+        other.track.height[row] = together.measurements.sampled(row).height(radii);
     }
     other.shape.chi_square = square / other.sigma.powi(2);
     other.rms_residual = (square / other.shape.samples as f64).sqrt();
@@ -387,13 +387,13 @@ mod tests {
         SlowExperiment::new(scene, None).unwrap_or_else(|error| panic!("{error:?}"))
     }
 
-    /// A run without a jump of which some samples are given another stable pose, in the middle and at both ends: the track is as it was, and no jump is told.
+    /// A run without a jump of which some samples are given another stable pose, in the middle and at both ends: the track is as it was, and no jump is reported.
     #[test]
     fn samples_in_another_pose_are_led_on() {
         let experiment = experiment("");
-        let readings = &experiment.readings;
+        let measurements = &experiment.measurements;
         let found = experiment.run(&|| false, &|_| ()).together.unwrap();
-        assert!(found_jumps(readings, &found).is_empty());
+        assert!(found_jumps(measurements, &found).is_empty());
         let outline = Outline::of(&found.shape.support.coefficients(), 0);
         let support = |angle: f64| {
             let [radius, slope, second, _] = outline.support(angle);
@@ -404,7 +404,7 @@ mod tests {
             let mut given = 0;
             for row in rows.clone() {
                 let own = found.track.phi0[row];
-                let other = stable_poses(&support, readings.palms[row])
+                let other = stable_poses(&support, measurements.palms[row])
                     .into_iter()
                     .map(|pose| pose + ((own - pose) / TAU).round() * TAU)
                     .find(|pose| (pose - own).abs() > 0.5);
@@ -412,9 +412,9 @@ mod tests {
                     (wrong.track.phi0[row], given) = (other, given + 1);
                 }
             }
-            assert!(given > 0 && !found_jumps(readings, &wrong).is_empty(), "{rows:?}");
-            let mended = with_poses_and_jumps(readings, wrong, &|| false);
-            assert!(found_jumps(readings, &mended).is_empty(), "{rows:?}");
+            assert!(given > 0 && !found_jumps(measurements, &wrong).is_empty(), "{rows:?}");
+            let mended = with_poses_and_jumps(measurements, wrong, &|| false);
+            assert!(found_jumps(measurements, &mended).is_empty(), "{rows:?}");
             for row in rows {
                 assert!((mended.track.phi0[row] - found.track.phi0[row]).abs() < 1e-6, "{row}");
                 assert!((mended.track.height[row] - found.track.height[row]).abs() < 1e-6, "{row}");
@@ -422,7 +422,7 @@ mod tests {
         }
     }
 
-    /// Where the readings are those of the other pose a jump stays: here the contacts of a stretch are those of another pose of the same body.
+    /// Where the measurements are those of the other pose a jump stays: here the contacts of a stretch are those of another pose of the same body.
     #[test]
     fn what_the_readings_bear_out_stays() {
         let experiment = experiment("[sensor]\nnoise = 1e-3\n");
@@ -432,20 +432,20 @@ mod tests {
             let [radius, slope, second, _] = outline.support(angle);
             [radius, slope, second]
         };
-        let mut readings = experiment.readings.clone();
+        let mut measurements = experiment.measurements.clone();
         let mut wrong = found.clone();
         for row in 30..38 {
             let own = found.track.phi0[row];
-            let poses = stable_poses(&support, readings.palms[row]);
+            let poses = stable_poses(&support, measurements.palms[row]);
             let other =
                 poses.into_iter().find(|pose| ((pose - own + PI).rem_euclid(TAU) - PI).abs() > 0.5).unwrap();
-            let together = Together::of(&experiment.readings);
-            readings.contacts[row] = together.contacts(row, &together.touched(row, other, &outline));
+            let together = Together::of(&experiment.measurements);
+            measurements.contacts[row] = together.contacts(row, &together.touched(row, other, &outline));
             wrong.track.phi0[row] = other;
         }
-        let told = found_jumps(&readings, &wrong).len();
+        let told = found_jumps(&measurements, &wrong).len();
         assert!(told >= 2);
-        let kept = with_poses_and_jumps(&readings, wrong, &|| false);
-        assert_eq!(found_jumps(&readings, &kept).len(), told);
+        let kept = with_poses_and_jumps(&measurements, wrong, &|| false);
+        assert_eq!(found_jumps(&measurements, &kept).len(), told);
     }
 }

@@ -1,51 +1,51 @@
-//! The one constant that the readings leave open, found with nothing known.
+//! The one constant that the measurements leave open, estimated with no prior knowledge.
 //!
-//! Where the numerator of 3.37 vanishes and the body turns, the denominator vanishes too: the centre of mass passes the centre of rotation, whose height is read. Each such moment
-//! is a vote for the height at the first sample; zeros at which the body rests are scattered votes. Where noise drowns the numerator, closure tells: the same direction touched twice has one radius, so that one closed
+//! Where the numerator of 3.37 vanishes and the body turns, the denominator vanishes too: the centre of mass passes the centre of rotation, whose height is measured. Each such moment
+//! is a vote for the height at the first sample; zeros at which the body rests are scattered votes. Where noise drowns the numerator, closure decides: the same direction touched twice has one radius, so that one closed
 //! support function goes through all radii of a track only where the constant is right.
 
 use super::closure::closed;
 use super::found::{EXACT, SlowShape};
-use super::ladder::Orders;
+use super::measurements::SlowMeasurements;
+use super::orders::Orders;
 use super::quadrature::Quadrature;
-use super::readings::SlowMeasurements;
 use super::together::Together;
 
-/// Votes that lie so near, in parts of the mean contact, are for the same constant.
+/// Votes within this fraction of the mean contact are for the same constant.
 const SAME_VOTE: f64 = 2e-3;
 
-/// Closure is asked at steps of this part of the mean contact.
+/// Closure is evaluated at steps of this fraction of the mean contact.
 const SCAN: f64 = 0.02;
 
-/// So many starts go on.
+/// The number of starts.
 const STARTS: usize = 8;
 
-/// So many of them where only a window is looked at.
+/// The number of starts for a single window.
 const BRIEF_STARTS: usize = 3;
 
-/// So many of them are gone through by parts.
+/// The number of starts that are gone through by parts.
 const PARTED: usize = 2;
 
-/// The order of the closed function that is asked for closure.
+/// The order of the closed function for closure.
 const ORDER: usize = 8;
 
-/// A constant that a zero of 3.37's numerator tells.
+/// A constant determined by zeros of 3.37's numerator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vote {
     /// The height of the centre of mass at the first sample, in m.
     pub height: f64,
-    /// How many zeros tell it, to a five-hundredth of the mean contact.
+    /// The number of zeros that agree on it, to a five-hundredth of the mean contact.
     pub votes: usize,
 }
 
-/// The constants that zeros of the numerator of 3.37 tell, those with most votes first.
-pub fn votes(readings: &SlowMeasurements) -> Vec<Vote> {
-    let quadrature = Quadrature::of(readings);
-    let rates = readings.contact_rates(9);
-    let rows = readings.rows();
+/// The constants determined by zeros of the numerator of 3.37, those with most votes first.
+pub fn votes(measurements: &SlowMeasurements) -> Vec<Vote> {
+    let quadrature = Quadrature::of(measurements);
+    let rates = measurements.contact_rates(9);
+    let rows = measurements.rows();
     let numerators: Vec<f64> =
-        (0..rows).map(|row| readings.sampled(row).turning([0.0; 2], rates[row])[0]).collect();
-    let constant = |row: usize| readings.sampled(row).rotation_centre()[1] - quadrature.lifted[row];
+        (0..rows).map(|row| measurements.sampled(row).turning([0.0; 2], rates[row])[0]).collect();
+    let constant = |row: usize| measurements.sampled(row).rotation_centre()[1] - quadrature.lifted[row];
     let mut told: Vec<f64> = (1..rows)
         .filter(|row| (numerators[row - 1] < 0.0) != (numerators[*row] < 0.0))
         .map(|row| {
@@ -69,7 +69,7 @@ pub fn votes(readings: &SlowMeasurements) -> Vec<Vote> {
         .filter(|constant: &f64| constant.is_finite())
         .collect();
     told.sort_by(f64::total_cmp);
-    let near = SAME_VOTE * readings.scale();
+    let near = SAME_VOTE * measurements.scale();
     let mut all: Vec<Vote> = Vec::new();
     for group in told.chunk_by(|a, b| b - a <= near) {
         all.push(Vote { height: group[group.len() / 2], votes: group.len() });
@@ -78,21 +78,21 @@ pub fn votes(readings: &SlowMeasurements) -> Vec<Vote> {
     all
 }
 
-/// A constant, and how well one closed function goes through the radii that follow from it.
+/// A constant, and the residual of one closed function through the radii that follow from it.
 struct Closed {
     height: f64,
-    /// The root of the mean square of what is left, in parts of the mean radius.
+    /// The root mean square residual, relative to the mean radius.
     left: f64,
 }
 
-/// Heights from which to begin, the best first.
-fn starts(readings: &SlowMeasurements, quadrature: &Quadrature) -> Vec<f64> {
-    let scale = readings.scale();
+/// Initial heights, the best first.
+fn starts(measurements: &SlowMeasurements, quadrature: &Quadrature) -> Vec<f64> {
+    let scale = measurements.scale();
     let [low, high] = quadrature.heights();
     let low = low.max(-4.0 * scale);
     let high = high.min(low + 4.0 * scale);
     let at = |height: f64| {
-        let left = closed(readings, &quadrature.track(&readings.times, height), ORDER)?.1;
+        let left = closed(measurements, &quadrature.track(&measurements.times, height), ORDER)?.1;
         Some(Closed { height, left })
     };
     let count = ((high - low) / (SCAN * scale)).ceil().clamp(1.0, 400.0) as usize;
@@ -118,8 +118,8 @@ fn starts(readings: &SlowMeasurements, quadrature: &Quadrature) -> Vec<f64> {
             Some(best)
         })
         .collect();
-    if readings.sigma == 0.0 {
-        all.extend(votes(readings).into_iter().take(4).filter_map(|vote| at(vote.height)));
+    if measurements.sigma == 0.0 {
+        all.extend(votes(measurements).into_iter().take(4).filter_map(|vote| at(vote.height)));
     }
     all.sort_by(|a, b| a.left.total_cmp(&b.left));
     all.iter().map(|at| at.height).take(STARTS).collect()
@@ -130,49 +130,49 @@ fn left_height(grid: &[Option<Closed>], i: usize, by: isize) -> Option<f64> {
     beside.or(grid[i].as_ref()).map(|at| at.height)
 }
 
-/// Shape and motion from the readings alone, nothing known at the start: several constants by closure, all readings at once from each, and the residuals of the readings
-/// as the judge. None where no start can be followed; whether the readings are explained says [`SlowShape::explains`].
-pub fn from_nothing(readings: &SlowMeasurements, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
-    from_nothing_within(readings, Orders::CHOSEN, interrupt)
+/// Shape and motion from the measurements alone, with no prior knowledge: several constants by closure, a batch estimate from each, and the residuals of the measurements
+/// to decide. None where no start can be followed; whether the measurements are explained says [`SlowShape::explains`].
+pub fn from_nothing(measurements: &SlowMeasurements, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
+    from_nothing_within(measurements, Orders::CHOSEN, interrupt)
 }
 
-/// The same with orders that are told.
+/// The same with given orders.
 pub(super) fn from_nothing_within(
-    readings: &SlowMeasurements,
+    measurements: &SlowMeasurements,
     orders: Orders,
     interrupt: &dyn Fn() -> bool,
 ) -> Option<SlowShape> {
     let wholly = Effort { starts: STARTS, orders: &[ORDER, 4, 2], parted: PARTED };
-    search(readings, orders, &wholly, interrupt)
+    search(measurements, orders, &wholly, interrupt)
 }
 
 /// The same with few starts: for a window of which there are many.
 pub(super) fn from_nothing_briefly(
-    readings: &SlowMeasurements,
+    measurements: &SlowMeasurements,
     orders: Orders,
     interrupt: &dyn Fn() -> bool,
 ) -> Option<SlowShape> {
     let briefly = Effort { starts: BRIEF_STARTS, orders: &[ORDER, 3], parted: 0 };
-    search(readings, orders, &briefly, interrupt)
+    search(measurements, orders, &briefly, interrupt)
 }
 
 /// How much is tried.
 struct Effort {
     starts: usize,
-    /// Of the closed functions from which is begun.
+    /// Of the closed functions that the search starts from.
     orders: &'static [usize],
-    /// So many starts are gone through by parts.
+    /// The number of starts that are gone through by parts.
     parted: usize,
 }
 
 fn search(
-    readings: &SlowMeasurements,
+    measurements: &SlowMeasurements,
     orders: Orders,
     effort: &Effort,
     interrupt: &dyn Fn() -> bool,
 ) -> Option<SlowShape> {
-    let quadrature = Quadrature::of(readings);
-    let together = Together::of(readings);
+    let quadrature = Quadrature::of(measurements);
+    let together = Together::of(measurements);
     let mut best: Option<SlowShape> = None;
     let better = |best: &mut Option<SlowShape>, found: Option<SlowShape>| {
         if let Some(found) = found
@@ -182,18 +182,20 @@ fn search(
         }
         best.as_ref().is_some_and(|best| best.explains(orders.enough.max(EXACT * 1e-2))) || interrupt()
     };
-    let heights = starts(readings, &quadrature);
-    // the whole from every start; then, where nothing explains it, from its beginning on
+    let heights = starts(measurements, &quadrature);
+    // the whole from every start; then, where nothing explains it, from its first part on
     for (by_parts, count, closed_orders) in
         [(false, effort.starts, effort.orders), (true, effort.parted, &[ORDER][..])]
     {
         for height in heights.iter().take(count) {
-            let track = quadrature.track(&readings.times, *height);
+            let track = quadrature.track(&measurements.times, *height);
             for order in closed_orders {
-                let Some((support, _)) = closed(readings, &track, *order) else { continue };
+                let Some((support, _)) = closed(measurements, &track, *order) else { continue };
                 let found = match by_parts {
                     false => together.explain(&support, &track.phi0, orders, interrupt),
-                    true => Together::explain_by_parts(readings, &support, &track.phi0, orders, interrupt),
+                    true => {
+                        Together::explain_by_parts(measurements, &support, &track.phi0, orders, interrupt)
+                    }
                 };
                 if better(&mut best, found) {
                     return best;

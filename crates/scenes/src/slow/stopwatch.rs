@@ -1,4 +1,4 @@
-//! How long a way takes: the processor's time of this thread, so that whatever else a machine does does not count. Where a system does not tell it, a clock is read.
+//! The time that a method takes: this thread's processor time, so that other load of the machine does not count. Where a system does not provide it, a clock is used.
 
 /// Runs.
 pub(super) struct Stopwatch(f64);
@@ -31,7 +31,7 @@ mod tests {
     use super::Stopwatch;
     use std::time::{Duration, Instant};
 
-    /// Work takes time, and no more than passes; a thread that sleeps takes none where the system tells.
+    /// Work takes time, and no more than passes; a thread that sleeps takes none where the system measures processor time.
     #[test]
     fn it_counts_work_and_not_waiting() {
         let (watch, clock) = (Stopwatch::begun(), Instant::now());

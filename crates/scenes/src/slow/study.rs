@@ -1,10 +1,10 @@
-//! Many bodies: how often, how well and how fast each way finds a shape.
+//! Many bodies: how often, how accurately and how fast each method finds a shape.
 
 use super::families::Family;
 use super::found::EXACT;
-use super::ladder::Orders;
+use super::orders::Orders;
 use super::quadrature::by_quadrature;
-use super::run::{readings_of, track_error, without_excess};
+use super::run::{measurements_of, track_error, without_excess};
 use super::scene::{SlowScene, SlowStudy};
 use super::segments::{FoundJump, found_jumps, from_segments};
 use super::start::from_nothing_within;
@@ -24,21 +24,21 @@ use std::f64::consts::TAU;
 /// How long the plan takes, in s: nothing depends on it.
 const DURATION: f64 = 100.0;
 
-/// An outline that is off by less than this part of the mean radius (or so many times the resolution) is recovered.
+/// An outline whose error is less than this fraction of the mean radius (or so many times the resolution) counts as recovered.
 const RECOVERED: f64 = 1e-2;
 const RECOVERED_RESOLUTIONS: f64 = 2.0;
 
-/// Draws for a body that jumps as often as is asked and does not leave the palms.
+/// Draws for a body that jumps as often as required and does not leave the palms.
 const MOST_DRAWS: usize = 200;
 
-/// What one way did, over all bodies of a row. Errors are in parts of the mean radius, and in radians.
+/// The results of one method over all bodies of a row. Errors are relative to the mean radius, and in radians.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WayTally {
-    /// The greatest error of a support radius on the way, one a body; infinite where the way stopped.
+    /// The greatest error of a support radius on the way, one a body; infinite where the method stopped.
     pub radius: Vec<f64>,
     /// The greatest error of the orientation.
     pub phi0: Vec<f64>,
-    /// All seconds of the processor.
+    /// All seconds of processor time.
     pub seconds: f64,
 }
 
@@ -49,7 +49,7 @@ impl WayTally {
         self.seconds += seconds;
     }
 
-    /// Bodies on which the way ended before the last sample, or found nothing.
+    /// Bodies on which the method ended before the last sample, or found nothing.
     pub fn stopped(&self) -> usize {
         self.radius.iter().filter(|radius| radius.is_infinite()).count()
     }
@@ -58,19 +58,19 @@ impl WayTally {
 /// Runs with the same number of jumps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JumpTally {
-    /// All of them.
+    /// The number of runs.
     pub runs: usize,
     /// Those whose whole outline was recovered.
     pub recovered: usize,
     /// Those in which every jump was found between its own two samples, and no other.
     pub located: usize,
-    /// The runs whose measurements are explained by what was found.
+    /// The runs whose measurements are explained by the estimate.
     pub explained: usize,
-    /// Of these the ones with a jump that never happened: a certain one, as [`FoundJump::certain`](super::FoundJump) says, between whose samples the body did not jump.
+    /// Of these the ones with a false jump: a certain one ([`FoundJump::certain`](super::FoundJump)) between whose samples the body did not jump.
     pub false_jumps: usize,
-    /// Of the runs that are explained the ones with a jump of the body between two samples of which nothing is said.
+    /// Of the explained runs the ones with a jump of the body between two samples that is not reported.
     pub missed: usize,
-    /// The jumps of those that were recovered, and how many of them descent in the recovered potential leads to.
+    /// The number of jumps of the recovered runs, and of those to which descent in the recovered potential leads.
     pub predicted: [usize; 2],
 }
 
@@ -90,13 +90,13 @@ pub struct StudyRow {
     pub samples: usize,
     /// The resolution, in m.
     pub resolution: f64,
-    /// The last order of harmonics; none leaves it to the readings.
+    /// The last order of harmonics; where none, the measurements choose it.
     pub order: Option<usize>,
     /// The bodies.
     pub bodies: usize,
-    /// How many were asked for: fewer are there where the draws ran out, or it was interrupted.
+    /// The number of bodies that was required: there are fewer where the draws ran out, or it was interrupted.
     pub asked: usize,
-    /// The bodies that were drawn beside them and jumped, or did not as often as is asked.
+    /// The bodies that were drawn besides and jumped, or not as often as required.
     pub jumped: usize,
     /// Of runs with jumps, by their number.
     pub jumps: BTreeMap<usize, JumpTally>,
@@ -104,18 +104,18 @@ pub struct StudyRow {
     pub thesis: [WayTally; 3],
     /// From the true height.
     pub quadrature: WayTally,
-    /// With nothing known.
+    /// With no prior knowledge.
     pub together: WayTally,
     /// The greatest error of the whole outline, in m, one a body.
     pub outline: Vec<f64>,
     /// The bodies whose outline was recovered.
     pub recovered: usize,
-    /// The bodies that were not, although the residual says that the readings are explained.
+    /// The bodies whose outline was not recovered, although the measurements are explained.
     pub silent: usize,
 }
 
 impl StudyRow {
-    /// Replaces each time on the wall by NaN.
+    /// Replaces each time by NaN.
     pub fn forget_times(&mut self) {
         let ways = self.thesis.iter_mut().chain([&mut self.quadrature, &mut self.together]);
         ways.for_each(|way| way.seconds = f64::NAN);
@@ -143,8 +143,8 @@ fn outline_error(shape: &Shape, found: &SupportFunction) -> f64 {
     off(f64::midpoint(low, high))
 }
 
-/// The study of a scene: a row for each family, number of samples and resolution. Bodies that jump on the plan are counted and drawn anew. `found` is told what there is after each body, the row that
-/// is not whole among it, and in the end all.
+/// The study of a scene: a row for each family, number of samples and resolution. Bodies that jump on the plan are counted and drawn anew. `found` is called after each body with the rows so far, including
+/// the incomplete one, and once more at the end.
 ///
 /// # Errors
 /// What is wrong with the bodies.
@@ -214,7 +214,7 @@ impl StudyRow {
     }
 }
 
-/// Adds a body to a row; false where it does not jump as often as is asked, that is not at all unless something is said.
+/// Adds a body to a row; false where it does not jump as often as required, which is not at all unless stated.
 fn one_body(
     row: &mut StudyRow,
     shape: Shape,
@@ -246,31 +246,31 @@ fn one_body(
         row.jumped += 1;
         return false;
     };
-    // errors of its own for each body
-    let readings =
-        readings_of(&truth, scene.noise, row.resolution, scene.seed.wrapping_add(row.bodies as u64));
+    // each body has errors of its own
+    let measurements =
+        measurements_of(&truth, scene.noise, row.resolution, scene.seed.wrapping_add(row.bodies as u64));
     let size = study.size;
     row.bodies += 1;
     let first = &truth.moments[0];
     for (tally, method) in row.thesis.iter_mut().zip(ThesisMethod::ALL) {
         let watch = Stopwatch::begun();
-        let thesis = by_thesis(&readings, first.palms.map(|palm| palm.r), method);
+        let thesis = by_thesis(&measurements, first.palms.map(|palm| palm.r), method);
         let seconds = watch.seconds();
         tally.add(track_error(&truth, &thesis.track), size, seconds);
     }
     let watch = Stopwatch::begun();
-    let quadrature = by_quadrature(&readings, first.centre[1]);
+    let quadrature = by_quadrature(&measurements, first.centre[1]);
     let seconds = watch.seconds();
     row.quadrature.add(track_error(&truth, &quadrature), size, seconds);
     let watch = Stopwatch::begun();
     let found = if study.jumps.is_some() {
-        from_segments(&readings, interrupt)
+        from_segments(&measurements, interrupt)
     } else {
         let least = row.order.map_or(0, |order| order / 2);
-        from_nothing_within(&readings, Orders { least, most: row.order, enough: 0.0 }, interrupt)
+        from_nothing_within(&measurements, Orders { least, most: row.order, enough: 0.0 }, interrupt)
     };
     let found = found.map(|found| match row.order {
-        None => without_excess(&readings, found, interrupt),
+        None => without_excess(&measurements, found, interrupt),
         Some(_) => found,
     });
     let seconds = watch.seconds();
@@ -288,7 +288,7 @@ fn one_body(
         tally.runs += 1;
         if let Some(found) = found.as_ref().filter(|_| explained) {
             tally.explained += 1;
-            let (told, happened) = (found_jumps(&readings, found), rows_after(&truth));
+            let (told, happened) = (found_jumps(&measurements, found), rows_after(&truth));
             let is_at = |jump: &FoundJump, row: usize| (jump.within[0]..=jump.within[1]).contains(&row);
             let is_false = |jump: &FoundJump| jump.certain && !happened.iter().any(|row| is_at(jump, *row));
             tally.false_jumps += usize::from(told.iter().any(is_false));
@@ -297,7 +297,7 @@ fn one_body(
         }
         if let Some(found) = found.filter(|_| recovered && explained) {
             tally.recovered += 1;
-            let told = found_jumps(&readings, &found);
+            let told = found_jumps(&measurements, &found);
             let after: Vec<usize> = told.iter().map(|jump| jump.row).collect();
             tally.located += usize::from(after == rows_after(&truth));
             tally.predicted[0] += told.len();

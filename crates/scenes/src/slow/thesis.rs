@@ -1,18 +1,18 @@
-//! The thesis's way: its equations 3.35 to 3.37 integrated from radii at the first sample.
+//! The thesis's method: its equations 3.35 to 3.37 integrated from radii at the first sample.
 //!
 //! The denominator of 3.37 is `sin phi2 (y - y_r)`, the height of the centre of mass over the centre of rotation: where one passes the other it vanishes, and with it the numerator.
 //! A step that comes near divides one error by another.
 
+use super::measurements::SlowMeasurements;
 use super::quadrature::SlowTrack;
-use super::readings::SlowMeasurements;
 use ode_solvers::{Dop853, Dopri5, OutputType, SVector, System};
 use std::cell::Cell;
 
-/// The corrector is repeated until the state changes by less than this part, or so often.
+/// The corrector is repeated until the relative change of the state is below this, or so often.
 const SETTLED: f64 = 1e-12;
 const CORRECTIONS: usize = 20;
 
-/// Readings between samples and their rates come from the polynomial through so many: of fourth order as the method.
+/// Measurements between samples and their rates come from the polynomial through this many: of fourth order as the method.
 const POINTS: usize = 5;
 
 /// The tolerance of the adaptive solvers.
@@ -35,16 +35,16 @@ impl ThesisMethod {
         [ThesisMethod::PredictorCorrector, ThesisMethod::Dopri5, ThesisMethod::Dop853];
 }
 
-/// What the thesis's way makes of readings.
+/// The track by the thesis's method.
 #[derive(Clone, Debug)]
 pub struct ThesisTrack {
-    /// As far as it came.
+    /// Up to the last sample that it reached.
     pub track: SlowTrack,
     /// `e_f` of 3.38, in m, sample by sample.
     pub force_error: Vec<f64>,
     /// The length of `e_c` of 3.39, in m.
     pub contact_error: Vec<f64>,
-    /// Between which samples the denominator of 3.37 changes its sign, by the later one.
+    /// The samples before which the denominator of 3.37 changes its sign.
     pub vanishing: Vec<usize>,
     /// Why it stopped before the last sample.
     pub stopped: Option<String>,
@@ -53,7 +53,7 @@ pub struct ThesisTrack {
 type State = [f64; 3];
 
 /// The right-hand sides of 3.35 to 3.37, `d` by 3.18 and 3.19.
-fn rates(at: &super::readings::Sampled, contact_rates: [f64; 2], [r1, r2, _]: State) -> State {
+fn rates(at: &super::measurements::Sampled, contact_rates: [f64; 2], [r1, r2, _]: State) -> State {
     let [numerator, denominator] = at.turning([r1, r2], contact_rates);
     let turn = numerator / denominator;
     let d = at.tangential([r1, r2]);
@@ -65,11 +65,11 @@ fn along(state: State, parts: &[(f64, State)]) -> State {
 }
 
 /// Integrates 3.35 to 3.37 from the radii at the first sample, the orientation zero there.
-pub fn by_thesis(readings: &SlowMeasurements, radii: [f64; 2], method: ThesisMethod) -> ThesisTrack {
+pub fn by_thesis(measurements: &SlowMeasurements, radii: [f64; 2], method: ThesisMethod) -> ThesisTrack {
     let start = [radii[0], radii[1], 0.0];
     let (states, stopped) = match method {
-        ThesisMethod::PredictorCorrector => (predictor_corrector(readings, start), None),
-        ThesisMethod::Dopri5 | ThesisMethod::Dop853 => adaptive(readings, start, method),
+        ThesisMethod::PredictorCorrector => (predictor_corrector(measurements, start), None),
+        ThesisMethod::Dopri5 | ThesisMethod::Dop853 => adaptive(measurements, start, method),
     };
     let mut found = ThesisTrack {
         track: SlowTrack { radii: Vec::new(), phi0: Vec::new(), height: Vec::new() },
@@ -80,7 +80,7 @@ pub fn by_thesis(readings: &SlowMeasurements, radii: [f64; 2], method: ThesisMet
     };
     let mut before = 0.0;
     for (row, [r1, r2, phi0]) in states.into_iter().enumerate() {
-        let at = readings.sampled(row);
+        let at = measurements.sampled(row);
         let [d1, d2] = at.tangential([r1, r2]);
         let [s1, s2] = at.s;
         // 3.38 by 3.33: the side of contact 1 from the centre of mass, and where balance has it
@@ -107,18 +107,18 @@ pub fn by_thesis(readings: &SlowMeasurements, radii: [f64; 2], method: ThesisMet
     found
 }
 
-/// On uneven times the polynomials' integrals replace the textbook's weights, which are those of even ones.
-fn predictor_corrector(readings: &SlowMeasurements, start: State) -> Vec<State> {
-    let times = &readings.times;
-    let contact_rates = readings.contact_rates(POINTS);
-    let at = |row: usize, state: State| rates(&readings.sampled(row), contact_rates[row], state);
+/// On uneven times the integrals of polynomials replace the textbook's weights, which hold for even ones.
+fn predictor_corrector(measurements: &SlowMeasurements, start: State) -> Vec<State> {
+    let times = &measurements.times;
+    let contact_rates = measurements.contact_rates(POINTS);
+    let at = |row: usize, state: State| rates(&measurements.sampled(row), contact_rates[row], state);
     let mut states = vec![start];
     let mut slopes = vec![at(0, start)];
     for row in 1..times.len() {
         let (from, step) = (states[row - 1], times[row] - times[row - 1]);
         if row < 4 {
-            // the first steps by Runge and Kutta's, the readings between by their polynomial
-            let middle = readings.between(times[row - 1] + step / 2.0, POINTS);
+            // the first steps by Runge and Kutta's, the measurements between by their polynomial
+            let middle = measurements.between(times[row - 1] + step / 2.0, POINTS);
             let half = |slope: State| rates(&middle.0, middle.1, along(from, &[(step / 2.0, slope)]));
             let k1 = slopes[row - 1];
             let k2 = half(k1);
@@ -152,7 +152,7 @@ fn predictor_corrector(readings: &SlowMeasurements, start: State) -> Vec<State> 
     states
 }
 
-/// What the slopes at four nodes are worth in the integral between two times: of the cubic through them, by Simpson's rule, which is exact for it.
+/// The weights of the slopes at four nodes in the integral between two times: of the cubic through them, by Simpson's rule, which is exact for it.
 fn step_weights(nodes: &[f64], from: f64, to: f64) -> Vec<f64> {
     let basis = |j: usize, t: f64| -> f64 {
         (0..nodes.len()).filter(|k| *k != j).map(|k| (t - nodes[k]) / (nodes[j] - nodes[k])).product()
@@ -163,12 +163,12 @@ fn step_weights(nodes: &[f64], from: f64, to: f64) -> Vec<f64> {
         .collect()
 }
 
-/// From one sample to the next no more evaluations than these are made.
+/// The most evaluations from one sample to the next.
 const MOST_EVALUATIONS: usize = 4000;
 
 /// Time is the last coordinate: Dop853 of ode_solvers 0.6.2 takes zero for the twelfth node of the method, which is one.
 struct Law<'a> {
-    readings: &'a SlowMeasurements,
+    measurements: &'a SlowMeasurements,
     evaluations: &'a Cell<usize>,
 }
 
@@ -179,18 +179,22 @@ impl System<f64, SVector<f64, 4>> for Law<'_> {
             // no step is accepted from here on
             return dy.fill(f64::NAN);
         }
-        let (at, contact_rates) = self.readings.between(y[3], POINTS);
+        let (at, contact_rates) = self.measurements.between(y[3], POINTS);
         let [r1, r2, phi0] = rates(&at, contact_rates, [y[0], y[1], y[2]]);
         *dy = SVector::from([r1, r2, phi0, 1.0]);
     }
 }
 
-/// From sample to sample; the rows that were reached, and why no more.
-fn adaptive(readings: &SlowMeasurements, start: State, method: ThesisMethod) -> (Vec<State>, Option<String>) {
+/// From sample to sample; the states at the samples that were reached, and why it stopped.
+fn adaptive(
+    measurements: &SlowMeasurements,
+    start: State,
+    method: ThesisMethod,
+) -> (Vec<State>, Option<String>) {
     let mut states = vec![start];
-    for ends in readings.times.windows(2) {
+    for ends in measurements.times.windows(2) {
         let evaluations = Cell::new(0);
-        let (law, span) = (Law { readings, evaluations: &evaluations }, ends[1] - ends[0]);
+        let (law, span) = (Law { measurements, evaluations: &evaluations }, ends[1] - ends[0]);
         let [r1, r2, phi0] = states[states.len() - 1];
         let y = SVector::from([r1, r2, phi0, ends[0]]);
         // the four numbers before the step sizes are the solvers' usual safety factor, damping, and bounds on a change of step

@@ -1,14 +1,14 @@
-//! Shape and motion batch estimate of all measurements: the support function whose equilibria explain the contacts best.
+//! Shape and motion as a batch estimate of all measurements: the support function whose equilibria fit the contacts best.
 //!
-//! At palm angles that are known the body lies where `G = A r_1' + B r_2'` vanishes and grows; which of these poses, says the one in which it lay at the last step of
+//! At known palm angles the body lies where `G = A r_1' + B r_2'` vanishes and grows; of these poses the one is taken in which it lay at the last step of
 //! the search. From there the contacts follow, and their derivatives by the coefficients `c` are exact: by the pose's, `d phi0/dc = (A b_1' + B b_2')/(A r_1'' + B r_2'')`
-//! with the basis `b`, and by the coefficients' own. The turn of the body's frame is a choice; the search does not move it. Levenberg and Marquardt's steps by QR; the
-//! inverse of the last normal matrix is Cramér and Rao's bound. Which orders are tried says `ladder`.
+//! with the basis `b`, and by the coefficients' own. The turn of the body's frame is arbitrary; the search does not move it. Levenberg and Marquardt's steps by QR; the
+//! inverse of the last normal matrix is the Cramér-Rao bound. Which orders are tried says `orders`.
 
 use super::found::SlowShape;
+use super::measurements::{Sampled, SlowMeasurements};
 use super::outline::{OF_KINK, Outline};
 use super::quadrature::SlowTrack;
-use super::readings::{Sampled, SlowMeasurements};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use palmistry_bodies::shape::{Measured, ShapeEstimate, SupportSeries, convex_deviation, deviation_of};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -16,13 +16,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Steps for an order.
 const STEPS: usize = 40;
 
-/// A step that lowers the sum of squares by less than this part is the last.
+/// The last step lowers the sum of squares by less than this fraction.
 const SETTLED: f64 = 1e-6;
 
-/// The standard deviation of exact readings, in parts of the mean contact.
+/// The standard deviation of exact measurements, relative to the mean contact.
 const NOMINAL: f64 = 1e-13;
 
-/// The order to which a shape with kinks is told.
+/// The order to which a shape with kinks is expanded.
 const EXPANDED: usize = 200;
 
 /// In one step no pose turns by more than this, in radians: it is another pose then.
@@ -33,7 +33,7 @@ const LARGEST_TURN: f64 = 0.5;
 pub(super) struct Point {
     pub coefficients: Vec<f64>,
     pub phi0: Vec<f64>,
-    /// What is left of the contacts, in deviations, and of what convexity says of the coefficients.
+    /// The residuals of the contacts, in deviations, and of the convexity prior of the coefficients.
     pub left: DVector<f64>,
     pub cost: f64,
     stiffness: f64,
@@ -43,24 +43,24 @@ pub(super) struct Point {
 pub(super) struct Together<'a> {
     sampled: Vec<Sampled>,
     angles: Vec<[f64; 2]>,
-    pub readings: &'a SlowMeasurements,
+    pub measurements: &'a SlowMeasurements,
     pub sigma: f64,
-    /// A mean radius by which convexity's bounds are measured.
+    /// A mean radius as the unit of the convexity prior.
     pub size: f64,
     /// How many kinks of the curvature the coefficients end with.
     pub kinks: usize,
-    /// Samples that do not count for now.
+    /// Samples that are left out for now.
     pub passed_over: Vec<bool>,
-    /// Where the potential is to have a slope.
+    /// Where the potential has a prescribed slope.
     pub held: Vec<Held>,
 }
 
-/// A place at which the potential is to have a slope, for now: so that the body can lie there at a sample.
+/// A place at which the slope of the potential is prescribed for now, so that the body can lie there at a sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Held {
     pub row: usize,
     pub phi0: f64,
-    /// The slope, in m, and how exactly it is to be had.
+    /// The slope and its standard deviation, in m.
     pub slope: f64,
     pub deviation: f64,
 }
@@ -74,17 +74,17 @@ fn sign_of(order: usize) -> f64 {
 pub(super) type Touched = [[f64; 4]; 2];
 
 impl<'a> Together<'a> {
-    pub fn of(readings: &'a SlowMeasurements) -> Together<'a> {
+    pub fn of(measurements: &'a SlowMeasurements) -> Together<'a> {
         let angle = |p: &[f64; 2]| [p[0] - FRAC_PI_2, p[0] + p[1] - 3.0 * FRAC_PI_2];
-        let scale = readings.scale();
+        let scale = measurements.scale();
         Together {
-            sampled: (0..readings.rows()).map(|row| readings.sampled(row)).collect(),
-            angles: readings.palms.iter().map(angle).collect(),
-            readings,
-            sigma: readings.sigma.max(NOMINAL * scale),
+            sampled: (0..measurements.rows()).map(|row| measurements.sampled(row)).collect(),
+            angles: measurements.palms.iter().map(angle).collect(),
+            measurements,
+            sigma: measurements.sigma.max(NOMINAL * scale),
             size: scale,
             kinks: 0,
-            passed_over: vec![false; readings.rows()],
+            passed_over: vec![false; measurements.rows()],
             held: Vec::new(),
         }
     }
@@ -184,7 +184,7 @@ impl<'a> Together<'a> {
         ]
     }
 
-    /// By how many deviations the contacts of a pose are off, squared and summed: of readings with errors of `sigma`, in m, and of what the covariance of the outline's coefficients leaves open.
+    /// The chi-square of the contacts of a pose: by the measurements' errors of `sigma`, in m, and the covariance of the outline's coefficients.
     pub fn surprise(
         &self,
         row: usize,
@@ -195,9 +195,9 @@ impl<'a> Together<'a> {
     ) -> f64 {
         let contacts = self.contacts(row, &self.touched(row, phi0, series));
         let forms = self.by_coefficients(row, phi0, series);
-        let off = Vector2::from_fn(|i, _| self.readings.contacts[row][i] - contacts[i]);
+        let off = Vector2::from_fn(|i, _| self.measurements.contacts[row][i] - contacts[i]);
         let mut spread = Matrix2::identity() * (sigma * sigma);
-        // a shape that nothing is known of by its covariance is taken at its word
+        // without a finite covariance the shape is taken as exact
         if covariance.iter().all(|entry| entry.is_finite()) {
             let forms = DMatrix::from_fn(forms[0].len(), 2, |k, i| forms[i][k]);
             let open = forms.transpose() * covariance * &forms;
@@ -206,7 +206,7 @@ impl<'a> Together<'a> {
         spread.cholesky().map_or(f64::INFINITY, |spread| off.dot(&spread.solve(&off)))
     }
 
-    /// The same where the body lay at an orientation that is no stable pose of this outline: the contacts there, and by how many deviations the potential is steep.
+    /// The same where the body lay at an orientation that is no stable pose of this outline: the contacts there, and the slope of the potential in deviations.
     pub fn surprise_if_it_lay(
         &self,
         row: usize,
@@ -217,7 +217,7 @@ impl<'a> Together<'a> {
     ) -> f64 {
         let contacts = self.contacts(row, &self.touched(row, phi0, series));
         let off =
-            (0..2).map(|i| ((self.readings.contacts[row][i] - contacts[i]) / sigma).powi(2)).sum::<f64>();
+            (0..2).map(|i| ((self.measurements.contacts[row][i] - contacts[i]) / sigma).powi(2)).sum::<f64>();
         let [slope, _] = self.bent(row, phi0, series, covariance);
         let steep = (slope.value / slope.deviation).powi(2);
         if steep.is_nan() || slope.deviation.is_infinite() { f64::INFINITY } else { off + steep }
@@ -245,19 +245,19 @@ impl<'a> Together<'a> {
         forms
     }
 
-    /// The root of the mean square of what is left of the contacts at a shape, each pose the next one to what is given, in m.
+    /// The root mean square residual of the contacts at a shape, each pose the stable one next to the given one, in m.
     pub fn left_at(&self, support: &SupportSeries, near: &[f64]) -> Option<f64> {
         let rows = 2 * self.sampled.len();
         let at = self.settled(support.coefficients(), near, LARGEST_TURN)?;
         Some((at.left.rows(0, rows).norm_squared() / rows as f64).sqrt() * self.sigma)
     }
 
-    /// A point at coefficients, every pose the next one to what is given.
+    /// A point at coefficients, every pose the stable one next to the given one.
     pub fn point(&self, coefficients: Vec<f64>, near: &[f64]) -> Option<Point> {
         self.settled(coefficients, near, LARGEST_TURN)
     }
 
-    /// A point to begin at: the poses next to those of a track, however far, or those to which the palms lead the body from the first one, whichever explain more.
+    /// An initial point: the poses next to those of a track, however far, or those to which the palms lead the body from the first one, whichever explain more.
     pub fn begin(&self, coefficients: &[f64], near: &[f64]) -> Option<Point> {
         let series = self.outline(coefficients);
         let mut led = Vec::with_capacity(near.len());
@@ -285,7 +285,7 @@ impl<'a> Together<'a> {
             phi0.push(pose);
             let s = self.contacts(row, &self.touched(row, pose, &series));
             for i in 0..2 {
-                left[2 * row + i] = (self.readings.contacts[row][i] - s[i]) / self.sigma;
+                left[2 * row + i] = (self.measurements.contacts[row][i] - s[i]) / self.sigma;
             }
         }
         for (place, coefficient) in coefficients.iter().enumerate().take(1 + 2 * series.order()).skip(1) {
@@ -299,7 +299,7 @@ impl<'a> Together<'a> {
         cost.is_finite().then_some(Point { coefficients, phi0, left, cost, stiffness: least })
     }
 
-    /// The derivatives of what is left by the coefficients, negative.
+    /// The derivatives of the residuals by the coefficients, negative.
     fn rows(&self, at: &Point) -> DMatrix<f64> {
         let (rows, p) = (self.sampled.len(), at.coefficients.len());
         let series = self.outline(&at.coefficients);
@@ -335,7 +335,7 @@ impl<'a> Together<'a> {
         if length > 0.0 { direction / length } else { direction }
     }
 
-    /// The triangle of the rows, and what they say of the right side, with a row that holds the frame.
+    /// The triangle of the rows, and the rotated right-hand side, with a row that fixes the frame.
     fn triangle(&self, at: &Point) -> (DMatrix<f64>, DVector<f64>) {
         let rows = self.rows(at);
         let (m, p) = rows.shape();

@@ -1,4 +1,4 @@
-//! Changes of what a motion follows from, and the normal equations for them.
+//! Changes of the initial state and parameters of a motion, and the normal equations for them.
 
 use super::UNKNOWNS;
 use super::flow::{DIRECTIONS, INVERSE, MOMENTUM, MU, Start};
@@ -68,7 +68,7 @@ impl Start {
         )
     }
 
-    /// What takes derivatives in all directions to those by changes.
+    /// The chain rule from derivatives in all directions to those by changes.
     pub fn chain(&self) -> Option<Chain> {
         let k = Positive::of(&self.inverse)?;
         let changes = std::array::from_fn(|a| {
@@ -129,7 +129,7 @@ impl Normal {
         }
     }
 
-    /// The step of least squares, the diagonal made larger by a part of itself.
+    /// The least-squares step, the diagonal enlarged by a fraction of itself.
     pub fn step(&self, damping: f64) -> Option<Change> {
         let mut matrix = self.matrix;
         for (i, row) in matrix.iter_mut().enumerate() {
@@ -139,7 +139,7 @@ impl Normal {
     }
 }
 
-/// The longest step: in parts of a length, of a length in a second, of a rate, and relatively.
+/// The largest step: in units of a length, of a length times a rate, of a rate, and relative.
 #[derive(Clone, Copy)]
 pub(super) struct Scale {
     pub length: f64,

@@ -11,7 +11,7 @@ pub(super) struct Constrained {
     pub value: [f64; 3],
     /// A row a palm.
     pub by: [[f64; DIRECTIONS]; 3],
-    /// By how much each changes with its contact's two coordinates.
+    /// The derivatives of each by its contact's two coordinates.
     pub slopes: [[f64; 2]; 3],
     pub centre: Vector,
     pub at: Turned<DIRECTIONS>,

@@ -1,4 +1,4 @@
-//! How the body is turned at every sample, and how that changes with all it follows from.
+//! The orientation of the body at every sample, and its derivatives by everything that it depends on.
 //!
 //! `R' = R hat(K R^T l)` by the method of J. C. Butcher with seven stages and order six (On Runge-Kutta processes of high order, J. Austral. Math. Soc. 4, 1964), and with it `xi`, the change `R hat(xi)` of `R`
 //! by each of 19 directions:
@@ -10,14 +10,14 @@
 use super::integrals::{Integrals, Node, Step};
 use super::vector::{IDENTITY, Matrix, Vector, along, back, cross, scaled, symmetric, times, unit};
 
-/// Centre, velocity, momentum, an additional turn at the beginning, `K`, `mu`: three each, then six and one.
+/// Centre, velocity, momentum, an additional turn at the first sample, `K`, `mu`: three each, then six and one.
 pub(super) const DIRECTIONS: usize = 19;
 pub(super) const MOMENTUM: usize = 6;
 pub(super) const TURN: usize = 9;
 pub(super) const INVERSE: usize = 12;
 pub(super) const MU: usize = 18;
 
-/// What a motion follows from.
+/// The initial state and the parameters of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Start {
     pub centre: Vector,
@@ -32,7 +32,7 @@ pub(super) struct Start {
     pub mu: f64,
 }
 
-/// `N` is 0 where derivatives are not asked for.
+/// `N` is 0 where no derivatives are needed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turned<const N: usize> {
     pub turn: Matrix,
@@ -59,7 +59,7 @@ impl Start {
         (l, along(&drawn, -2.0 * self.mu, &node.moved))
     }
 
-    /// What the momentum changes by in a direction, `by_mu` its derivative by that.
+    /// The derivative of the momentum in a direction, `by_mu` its derivative by `mu`.
     pub fn momentum_along(&self, node: &Node, by_mu: &Vector, direction: usize) -> Vector {
         match direction {
             0..3 => scaled(-self.mu, &cross(&unit(direction), &node.force)),
@@ -71,7 +71,7 @@ impl Start {
     }
 }
 
-/// The angular velocity in the body's frame, and what it changes by in each direction.
+/// The angular velocity in the body's frame, and its derivative in each direction.
 pub(super) fn own_rate<const N: usize>(
     start: &Start,
     node: &Node,
@@ -126,7 +126,7 @@ fn added<const N: usize>(from: &Turned<N>, length: f64, slopes: &[Turned<N>], by
     sum
 }
 
-/// The stages after the first: the node, and the parts of slopes before.
+/// The stages after the first: the node, and the weights of the slopes before.
 const STAGES: [(usize, &[f64]); 6] = [
     (0, &[1.0 / 3.0]),
     (2, &[0.0, 2.0 / 3.0]),
@@ -152,7 +152,7 @@ fn stepped<const N: usize>(
     added(from, step.length, &slopes, &PARTS)
 }
 
-/// How the body is turned at each sample that is looked at.
+/// The orientation of the body at each sample that is used.
 pub(super) fn turned<const N: usize>(start: &Start, all: &Integrals) -> Vec<Turned<N>> {
     let mut moved = [[0.0; 3]; N];
     for (i, xi) in moved.iter_mut().skip(TURN).take(3).enumerate() {

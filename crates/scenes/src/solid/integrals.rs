@@ -1,11 +1,11 @@
-//! The integrals of the readings that the laws are made of, at samples and between them.
+//! The integrals of the measurements that the laws need, at samples and between them.
 
 use super::SolidMeasurements;
 use super::rule::{POINTS, Piece, piece};
 use super::surface::PalmSample;
 use super::vector::{Vector, along, cross};
 
-/// What the motion at a time is made of.
+/// The integrals that determine the motion at a time.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Node {
     /// Since the first sample.
@@ -26,17 +26,17 @@ impl Node {
     }
 }
 
-/// What is between two samples that are looked at: its length in s, and the nodes of the integrator, of which the last is the end.
+/// The interval between two samples that are used: its length in s, and the nodes of the integrator, of which the last is the end.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
     pub length: f64,
     pub nodes: [Node; 4],
 }
 
-/// At which parts of a step the integrator looks.
+/// The integrator's nodes as fractions of a step.
 const PARTS: [f64; 4] = [1.0 / 3.0, 0.5, 2.0 / 3.0, 1.0];
 
-/// The samples that are looked at, with all that follows from readings alone.
+/// The samples that are used, with all that follows from measurements alone.
 #[derive(Clone, Debug)]
 pub(super) struct Integrals {
     pub nodes: Vec<Node>,
@@ -45,7 +45,7 @@ pub(super) struct Integrals {
     pub gravity: Vector,
 }
 
-/// The rules of integration for a choice of samples; they do not change where readings are corrected.
+/// The rules of integration for a choice of samples; they do not change where measurements are corrected.
 pub(super) struct Rules {
     pub whole: Vec<Piece>,
     chosen: Vec<usize>,
@@ -74,7 +74,7 @@ impl Rules {
         Rules { whole, chosen, between, times }
     }
 
-    /// How much time each chosen sample stands for.
+    /// The time that each chosen sample represents.
     pub fn spacing(&self) -> Vec<f64> {
         let at = |k: usize| self.times[self.chosen[k]];
         let last = self.chosen.len() - 1;
@@ -94,8 +94,9 @@ impl Rules {
 }
 
 impl Integrals {
-    pub fn of(readings: &SolidMeasurements, rules: &Rules) -> Integrals {
-        let samples: Vec<[PalmSample; 3]> = (0..readings.rows()).map(|k| palms_at(readings, k)).collect();
+    pub fn of(measurements: &SolidMeasurements, rules: &Rules) -> Integrals {
+        let samples: Vec<[PalmSample; 3]> =
+            (0..measurements.rows()).map(|k| palms_at(measurements, k)).collect();
         let sums: Vec<[Vector; 2]> = samples
             .iter()
             .map(|palms| {
@@ -157,11 +158,11 @@ impl Integrals {
             steps: steps.collect(),
             nodes: rules.chosen.iter().map(|k| nodes[*k]).collect(),
             palms: rules.chosen.iter().map(|k| samples[*k]).collect(),
-            gravity: readings.gravity.into(),
+            gravity: measurements.gravity.into(),
         }
     }
 }
 
-fn palms_at(readings: &SolidMeasurements, row: usize) -> [PalmSample; 3] {
-    std::array::from_fn(|i| PalmSample::of(readings, row, i))
+fn palms_at(measurements: &SolidMeasurements, row: usize) -> [PalmSample; 3] {
+    std::array::from_fn(|i| PalmSample::of(measurements, row, i))
 }

@@ -21,7 +21,7 @@ pub(super) fn cholesky<const N: usize>(matrix: &[[f64; N]; N], size: usize) -> O
     Some(l)
 }
 
-/// What the triangle times it is.
+/// The solution of the system with this triangle.
 pub(super) fn forward<const N: usize>(l: &[[f64; N]; N], size: usize, right: &[f64; N]) -> [f64; N] {
     let mut y = [0.0; N];
     for i in 0..size {
@@ -34,7 +34,7 @@ pub(super) fn forward<const N: usize>(l: &[[f64; N]; N], size: usize, right: &[f
     y
 }
 
-/// What the transposed triangle times it is.
+/// The solution of the system with the transposed triangle.
 pub(super) fn backward<const N: usize>(l: &[[f64; N]; N], size: usize, right: &[f64; N]) -> [f64; N] {
     let mut y = [0.0; N];
     for i in (0..size).rev() {

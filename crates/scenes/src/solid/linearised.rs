@@ -1,4 +1,4 @@
-//! The constraints of all samples to first order, about a state and errors of the readings; errors are the likeliest for each change of the state.
+//! The constraints of all samples to first order, about a state and errors of the measurements; errors are the likeliest for each change of the state.
 
 use super::change::{Change, Normal};
 use super::constraint::expanded;
@@ -8,13 +8,13 @@ use super::vector::dot;
 use super::whiten::{Deviations, ERRORS, Whitener};
 use super::{SolidMeasurements, UNKNOWNS};
 
-/// The readings less errors in units of their deviations.
+/// The measurements less errors in units of their deviations.
 pub(super) fn corrected(
-    readings: &SolidMeasurements,
+    measurements: &SolidMeasurements,
     errors: &[[f64; ERRORS]],
     deviations: &Deviations,
 ) -> SolidMeasurements {
-    let mut own = readings.clone();
+    let mut own = measurements.clone();
     for (palms, error) in own.palms.iter_mut().zip(errors) {
         for (i, palm) in palms.iter_mut().enumerate() {
             palm.place[0] -= deviations.contact * error[2 * i];
@@ -25,10 +25,10 @@ pub(super) fn corrected(
     own
 }
 
-/// All constraints about a start and errors of the readings.
+/// All constraints about a start and errors of the measurements.
 pub(super) struct Linear {
     whitener: Whitener,
-    /// The constraints as they would be without errors that are taken away.
+    /// The constraints with the estimated errors added back.
     column: Vec<[f64; 3]>,
     rows: Vec<[Change; 3]>,
     pub normal: Normal,
@@ -36,7 +36,7 @@ pub(super) struct Linear {
     pub ratio: f64,
 }
 
-/// The mean square of what follows on each other less each other, over the mean square.
+/// The mean square of the differences of successive residuals, divided by their mean square.
 fn neumann(white: &[[f64; 3]]) -> f64 {
     let squares: f64 = white.iter().flatten().map(|value| value * value).sum();
     let steps: f64 =
@@ -46,22 +46,22 @@ fn neumann(white: &[[f64; 3]]) -> f64 {
 
 impl Linear {
     pub fn about(
-        readings: &SolidMeasurements,
+        measurements: &SolidMeasurements,
         rules: &Rules,
         deviations: &Deviations,
         start: &Start,
         errors: &[[f64; ERRORS]],
     ) -> Option<Linear> {
-        let none = vec![[0.0; ERRORS]; readings.rows()];
+        let none = vec![[0.0; ERRORS]; measurements.rows()];
         let errors = if errors.is_empty() { &none } else { errors };
-        let own = corrected(readings, errors, deviations);
+        let own = corrected(measurements, errors, deviations);
         if !own.is_whole() {
             return None;
         }
         let all = Integrals::of(&own, rules);
         let samples = expanded(start, &all);
         let whitener =
-            Whitener::of(start, &all, &samples, rules, deviations, readings.contact_deviation > 0.0)?;
+            Whitener::of(start, &all, &samples, rules, deviations, measurements.contact_deviation > 0.0)?;
         let made = whitener.made_by(errors);
         let column: Vec<[f64; 3]> = samples
             .iter()

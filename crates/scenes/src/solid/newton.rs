@@ -1,8 +1,8 @@
-//! Newton's method on the likelihood of the state alone, the readings' errors being the likeliest for each.
+//! Newton's method on the likelihood of the state alone, the measurements' errors being the likeliest for each.
 //!
-//! Gauss and Newton's matrix is made of derivatives at readings that still have half of their errors (a constraint tells one number of the two of its contact), and squares of errors do not cancel: it
-//! tells of information that is noise, and more of it the longer a record is. With contacts read to a millimetre over a second or two that is most of it, in what is told least: steps then end nowhere, and
-//! a bound by this matrix may be a hundred times too good. The Hessian has not that part: what is left of the errors, times second derivatives, takes it away (as in total least squares, where what is inverted is
+//! Gauss and Newton's matrix is made of derivatives at measurements that still have half of their errors (a constraint determines one of the two coordinates of its contact), and squares of errors do not cancel: it
+//! contains information that is noise, and more of it the longer a record is. With contacts measured to a millimetre over a second or two that is most of it, along the least observable directions: steps then diverge, and
+//! a bound by this matrix may be a hundred times too good. The Hessian is free of that part: the residuals, times second derivatives, remove it (as in total least squares, where the inverted matrix is
 //! `X^T X - s^2 1`: G. H. Golub and C. F. Van Loan, SIAM Journal on Numerical Analysis 17, 1980). It is taken by differences of the gradient, which is exact where errors are the likeliest.
 
 use super::UNKNOWNS;
@@ -25,38 +25,38 @@ pub(super) struct Settled {
     pub linear: Linear,
 }
 
-/// Errors are the likeliest where another pass changes none of them by so much of its deviation; so many passes.
+/// Errors count as the likeliest where another pass changes none of them by this fraction of its deviation; the number of passes.
 const SETTLED: f64 = 1e-4;
 const PASSES: usize = 6;
 
-/// So many steps. What a step would gain, in units of the deviations squared, below which none is taken, and below which what was found counts as a minimum: it is half a deviation away at most, where a valley is bent and
+/// The number of steps. The gain of a step, in units of the deviations squared, below which none is taken, and below which the state counts as a minimum: it is half a deviation away at most, where a valley is bent and
 /// steps are short.
 const STEPS: usize = 10;
 const GAINED: [f64; 2] = [1e-3, 0.25];
 
-/// How far from a minimum it is seen whether chi-square is a parabola.
+/// The distance from a minimum, in deviations, at which chi-square is compared with its parabola.
 const DEVIATIONS: f64 = 3.0;
 
-/// Parts of the scale of each unknown by which the gradient is differenced.
+/// The step of the gradient's differences, relative to the scale of each unknown.
 const DIFFERENCED: f64 = 1e-5;
 
 pub(super) type About<'a> = dyn Fn(&Start, &[[f64; ERRORS]]) -> Option<Linear> + 'a;
 
 impl Settled {
-    /// With readings as they are.
+    /// With measurements as they are.
     pub fn begun(about: &About<'_>, start: Start) -> Option<Settled> {
         let all = about(&start, &[])?;
         Some(Settled { start, linear: all })
     }
 
-    /// After a step, with the errors that are the likeliest by what is known before it.
+    /// After a step, with the errors that are the likeliest by the linearisation before it.
     pub fn next(&self, about: &About<'_>, step: &Change) -> Option<Settled> {
         let start = self.start.changed(step)?;
         let linear = about(&start, &self.linear.errors(step))?;
         Some(Settled { start, linear })
     }
 
-    /// The likeliest errors, from those that are likely.
+    /// The likeliest errors, starting from likely ones.
     pub fn of(about: &About<'_>, start: Start, from: Errors) -> Option<Settled> {
         let mut errors = from;
         let mut linear = about(&start, &errors)?;
@@ -109,7 +109,7 @@ impl Settled {
         Settled::of(about, self.start.changed(step)?, self.linear.errors(step))
     }
 
-    /// By how many times chi-square grows otherwise than by its curvature, three deviations along the two directions in which readings tell least, to both sides: 1 where it is a parabola, and no bound is to be trusted
+    /// The largest factor between the growth of chi-square and that of its parabola, three deviations along the two least observable directions, to both sides: 1 where it is a parabola, and no bound is valid
     /// far from that. Infinite where it falls. `spread` is the covariance of changes.
     pub fn bent(&self, about: &About<'_>, scale: &Scale, spread: &Spread, curvature: &Square) -> f64 {
         let sizes = Spread::from_fn(|i, j| scale.of(i) * scale.of(j));

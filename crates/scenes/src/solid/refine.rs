@@ -1,4 +1,4 @@
-//! The likeliest state and errors of the readings at once: Gauss and Newton's method on both, errors eliminated by the filter.
+//! The likeliest state and errors of the measurements at once: Gauss and Newton's method on both, errors eliminated by the filter.
 
 use super::change::{Positive, Scale, shortened};
 use super::flow::Start;
@@ -12,14 +12,14 @@ use super::{Rival, SolidMeasurements, SolidState, UNKNOWNS};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use palmistry_math::number::MOST_ITERATIONS;
 
-/// What refinement ends with.
+/// The result of refinement.
 #[derive(Clone, Debug)]
 pub(super) struct Refined {
     pub start: Start,
-    /// The readings without the errors that they likely have.
+    /// The measurements without their likeliest errors.
     pub corrected: SolidMeasurements,
     pub chi_square: f64,
-    /// What derivatives at the corrected readings tell: the covariance of the gradient.
+    /// The information by derivatives at the corrected measurements: the covariance of the gradient.
     information: Square,
     /// Half the Hessian of chi-square.
     curvature: Square,
@@ -27,7 +27,7 @@ pub(super) struct Refined {
     pub is_minimum: bool,
     /// See [`Settled::bent`].
     bent: f64,
-    /// Another end of the search that explains the readings as well.
+    /// Another end of the search that explains the measurements as well.
     pub rival: Option<Rival>,
     rms_residual: f64,
     /// J. von Neumann's ratio of the white residuals: about 2 where these are noise.
@@ -36,35 +36,36 @@ pub(super) struct Refined {
     weighed: f64,
 }
 
-/// What a whole step would gain, in units of the deviations squared, below which no other one is taken; and below which what was found counts where none gains anything. Contacts that are said to be exact are weighed with
-/// deviations that they have not, so that what is told a million times less than the rest still gains by far less.
+/// The gain of a whole step, in units of the deviations squared, below which no other one is taken; and below which the result counts as converged where none gains anything. Contacts that are said to be exact are weighted with
+/// deviations that they do not have, so that a direction a million times less observable than the rest still gains by far less.
 const GAINED: [f64; 2] = [1e-8, 1e-2];
 const EXACT_GAINED: f64 = 1e-18;
 
-/// Above so many times as many squares as there are constraints nothing is explained, and no minimum is looked for more closely.
+/// If chi-square is above this many times the number of constraints the fit is rejected, and no minimum is looked for more closely.
 const HOPELESS: f64 = 3.0;
 
-/// From a start; none where the method does not come to an end: with whole steps, and where these lead nowhere with damped ones. Where errors are stated Newton's method goes on from there, from what is no end too.
+/// From a start; none where the method does not converge: with whole steps, and where these fail with damped ones. Where errors are stated Newton's method goes on from there, also from where they did not converge.
 pub(super) fn refine(
-    readings: &SolidMeasurements,
+    measurements: &SolidMeasurements,
     rules: &Rules,
     from: Start,
     scale: &Scale,
     deviations: &Deviations,
 ) -> Option<Refined> {
-    let about =
-        |start: &Start, errors: &[[f64; ERRORS]]| Linear::about(readings, rules, deviations, start, errors);
-    let exact = readings.contact_deviation == 0.0;
+    let about = |start: &Start, errors: &[[f64; ERRORS]]| {
+        Linear::about(measurements, rules, deviations, start, errors)
+    };
+    let exact = measurements.contact_deviation == 0.0;
     let by = |growth: f64, most: usize| stepped(&about, from, scale, exact, (growth, most));
     let mut ended = by(f64::INFINITY, 15).filter(|(_, is_end)| *is_end);
     if ended.is_none() {
         ended = by(GROWTH, 25);
     }
     let (settled, is_end) = ended?;
-    let few = HOPELESS * (3 * readings.rows()) as f64;
+    let few = HOPELESS * (3 * measurements.rows()) as f64;
     let is_close = settled.chi_square() < few;
     if exact || !is_close {
-        return is_end.then(|| Refined::of(readings, deviations, settled, None));
+        return is_end.then(|| Refined::of(measurements, deviations, settled, None));
     }
     let (settled, curvature, is_minimum) = settled.descended(&about, scale)?;
     let spread = sandwiched(&settled.linear.normal.matrix, &curvature);
@@ -72,13 +73,13 @@ pub(super) fn refine(
         Some((spread, _)) if is_minimum => settled.bent(&about, scale, spread, &curvature),
         _ => f64::INFINITY,
     };
-    Some(Refined { bent, ..Refined::of(readings, deviations, settled, Some((curvature, is_minimum))) })
+    Some(Refined { bent, ..Refined::of(measurements, deviations, settled, Some((curvature, is_minimum))) })
 }
 
-/// By how much the sum of the squares may grow in a damped step.
+/// The factor by which the sum of the squares may grow in a damped step.
 const GROWTH: f64 = 1.05;
 
-/// The method with steps after which the sum of the squares is no more than so many times as large, and so many of them; and whether it came to an end.
+/// The method with steps after which the sum of the squares is no more than so many times as large, at most so many of them; and whether it converged.
 fn stepped(
     about: &About<'_>,
     from: Start,
@@ -118,7 +119,7 @@ fn stepped(
 
 impl Refined {
     fn of(
-        readings: &SolidMeasurements,
+        measurements: &SolidMeasurements,
         deviations: &Deviations,
         settled: Settled,
         bent: Option<(Square, bool)>,
@@ -128,7 +129,7 @@ impl Refined {
         let Linear { normal, ratio, .. } = settled.linear;
         Refined {
             start: settled.start,
-            corrected: corrected(readings, &errors, deviations),
+            corrected: corrected(measurements, &errors, deviations),
             chi_square: normal.cost,
             information: normal.matrix,
             curvature: bent.map_or(normal.matrix, |(curvature, _)| curvature),
@@ -142,16 +143,16 @@ impl Refined {
     }
 }
 
-/// An eigenvalue of the curvature below this part of what it is without errors counts as so much: what lies along it is not told.
+/// Eigenvalues of the curvature relative to the information are at least this: along smaller ones the state is unobservable.
 const FLAT: f64 = 1e-6;
 
-/// `H^-1 G H^-1` for the curvature `H` and the covariance `G` of the gradient: the covariance of what makes the gradient zero (P. J. Huber, Proceedings of the Fifth Berkeley Symposium, 1967). Both are one where readings are exact.
+/// `H^-1 G H^-1` for the curvature `H` and the covariance `G` of the gradient: the covariance of what makes the gradient zero (P. J. Huber, Proceedings of the Fifth Berkeley Symposium, 1967). Both are one where measurements are exact.
 /// With `G = L L^T` it is the inverse of the square of `L^-1 H L^-T`, between `L^-T` and `L^-1`.
 fn sandwiched(information: &Square, curvature: &Square) -> Option<(SMatrix<f64, UNKNOWNS, UNKNOWNS>, f64)> {
     let full = |of: &Square| {
         SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_fn(|i, j| if i > j { of[i][j] } else { of[j][i] })
     };
-    // the lower triangle that is not scaled loses what is told a million times less
+    // unscaled, directions that are a million times less observable would be lost to rounding
     let triangle = cholesky(information, UNKNOWNS)?;
     let lower = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_fn(|i, j| triangle[i][j]);
     let inverse = lower.solve_lower_triangular(&SMatrix::identity())?;
@@ -167,11 +168,11 @@ fn sandwiched(information: &Square, curvature: &Square) -> Option<(SMatrix<f64, 
 }
 
 impl Refined {
-    /// What is told of it.
+    /// The estimated state.
     pub fn state(&self) -> Option<SolidState> {
         let k = Positive::of(&self.start.inverse)?;
         let inertia = Matrix3::from_fn(|i, j| k.inverse[i][j]);
-        // what the sought numbers change by in each change
+        // the derivatives of the estimated quantities by each change
         let c = Matrix3::from_fn(|i, j| k.triangle[i][j]);
         let mut by = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::identity();
         for a in 0..6 {

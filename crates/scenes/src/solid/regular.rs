@@ -1,8 +1,8 @@
-//! From far off: least squares with a prior whose weight falls, the iteratively regularised method of Gauss and Newton (A. B. Bakushinskii, The problem of the convergence of the iteratively regularized
+//! From distant starts: least squares with a prior whose weight falls, the iteratively regularised method of Gauss and Newton (A. B. Bakushinskii, The problem of the convergence of the iteratively regularized
 //! Gauss-Newton method, Computational Mathematics and Mathematical Physics 32, 1992).
 //!
-//! Readings of a second or two tell some unknowns a thousand times less than others: without a prior the first steps run along such a valley to bodies that spin tens of times too fast, and do not come back.
-//! With one, what readings do not tell yet stays where it is thought to be, and the minimum moves a little with each weight.
+//! In measurements of a second or two some unknowns are a thousand times less observable than others: without a prior the first steps run along such a valley to bodies that spin tens of times too fast, and do not come back.
+//! With one, unknowns that are not observable yet stay at the prior, and the minimum moves a little with each weight.
 
 use super::UNKNOWNS;
 use super::change::{Change, Normal, Positive, Scale, shortened};
@@ -14,16 +14,16 @@ use super::vector::{PLACES, symmetric};
 /// Standard deviations of a prior: of the centre in lengths, of velocity and rate in those of a fall, of the inverse of the inertia in that of a ball, of the logarithm of 1/m.
 const SPREAD: [f64; 5] = [0.3, 0.3, 0.3, 0.5, 0.1];
 
-/// The first weight, in parts of a fall's speed, by what it is multiplied, and the last where readings are exact.
+/// The first weight of the prior, relative to a fall's speed; its factor; and the last weight where measurements are exact.
 const WEIGHTS: [f64; 3] = [0.03, 0.3, 1e-11];
-/// What the records after the first part begin with.
+/// The weight of the prior at first on the records after the first.
 const AGAIN: f64 = 1e-8;
 /// Steps for each weight; and for each part of the record after the first.
 const STEPS: [usize; 2] = [20, 40];
-/// A path has ended where readings leave no less than this part of what they left before, and so many times what the prior does.
+/// A path has stalled where the sum of squares of the measurements is above this fraction of its last value, and this many times that of the prior.
 const STALLED: [f64; 2] = [0.97, 10.0];
 
-/// What is thought before readings are looked at.
+/// The prior of the state.
 pub(super) struct Prior {
     pub at: Start,
     /// The inverse of the inertia over mass of a ball, in 1/m^2.
@@ -38,12 +38,12 @@ pub(super) struct Ended {
     pub start: Start,
     /// The sum of the squares of constraints, in units of a fall's speed.
     pub cost: f64,
-    /// Whether it came down to the last weight.
+    /// Whether it reached the last weight and the whole record.
     pub is_through: bool,
 }
 
 impl Prior {
-    /// How far a start is from it in its deviations, each with its derivatives by changes.
+    /// The differences of a start from the prior in its deviations, each with its derivatives by changes.
     pub fn rows(&self, here: &Start) -> Option<[(f64, Change); UNKNOWNS]> {
         let k = Positive::of(&here.inverse)?;
         let around: [[f64; 6]; 6] = std::array::from_fn(|a| {
@@ -76,7 +76,7 @@ impl Prior {
         }))
     }
 
-    /// The squares that readings leave, and those that the prior does.
+    /// The sums of squares of the measurements and of the prior.
     fn costs(&self, all: &Integrals, here: &Start) -> Option<[f64; 2]> {
         let unit = self.length * self.fall;
         let told = values(here, all).iter().flatten().map(|value| (value / unit).powi(2)).sum::<f64>();
@@ -99,7 +99,7 @@ impl Prior {
         normal.cost.is_finite().then_some(normal)
     }
 
-    /// Levenberg and Marquardt's method for one weight; what the readings and what the prior leave at its end.
+    /// Levenberg and Marquardt's method for one weight; the sums of squares of the measurements and of the prior at its end.
     fn descend(&self, all: &Integrals, from: Start, weight: f64, steps: usize) -> Option<(Start, [f64; 2])> {
         let scale = self.scale();
         let sum = |costs: &[f64; 2]| costs[0] + weight * weight * costs[1];
@@ -135,7 +135,7 @@ impl Prior {
         Scale { length: self.length, rate: SPREAD[2] * self.fall }
     }
 
-    /// From where it is on the first of some records, each of which is part of the next, to the last one; errors of this part of its length are known to be in a contact's place.
+    /// From the prior on the first of some records, each of which is part of the next, to the last one; `error` is the known error of a contact relative to its length.
     pub fn follow(&self, records: &[Integrals], error: f64) -> Option<Ended> {
         let [first, factor, last] = WEIGHTS;
         // an error is in a constraint by the body's rate, which is a tenth of a fall's

@@ -1,4 +1,4 @@
-//! Integrals of what is known at samples: of the polynomial through the eight samples about each interval.
+//! Integrals of quantities known at samples: of the polynomial through the eight samples about each interval.
 
 /// Samples that a polynomial goes through.
 pub(super) const POINTS: usize = 8;
@@ -11,14 +11,14 @@ const GAUSS: [(f64, f64); 4] = [
     (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
 ];
 
-/// How an integral from the beginning of an interval to a time in it, or its end, follows from samples.
+/// The weights of an integral from the start of an interval to a time in it, or its end.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
-    /// The interval, by the sample at its beginning.
+    /// The interval, by the sample at its start.
     pub interval: usize,
-    /// The first of the samples that count.
+    /// The first of the samples that are used.
     pub first: usize,
-    /// What they are multiplied by, in s.
+    /// Their weights, in s.
     pub weights: [f64; POINTS],
 }
 
@@ -44,7 +44,7 @@ pub(super) fn piece(times: &[f64], interval: usize, end: f64) -> Piece {
 }
 
 impl Piece {
-    /// The integral of what has these values at the samples.
+    /// The integral of a quantity with these values at the samples.
     pub fn of(&self, values: &[[f64; 3]]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (weight, value) in self.weights.iter().zip(&values[self.first..]) {

@@ -1,7 +1,7 @@
-//! Where to begin, from readings alone: drawn thoughts of how a body like a ball lies and turns, each followed (`regular`) while readings take over.
+//! Initial values from measurements alone: drawn priors of how a body like a ball lies and turns, each followed (`regular`) while measurements take over.
 //!
-//! It does not always arrive: with noise of a thousandth of the body a wrong minimum may be met first. One that does not explain the readings says so
-//! (`SolidState::fits`), and the search goes on. With noise, readings that are nearly blind may be explained by more than one state: another end is looked for, and one that explains them as well is told (`Rival`).
+//! It does not always converge to the truth: with noise of a thousandth of the body a wrong minimum may be met first. One that does not explain the measurements is rejected
+//! (`SolidState::fits`), and the search goes on. With noise, measurements of a barely observable state may be explained by more than one: another end is looked for, and one that explains them as well is reported (`Rival`).
 
 use super::change::Scale;
 use super::flow::Start;
@@ -17,20 +17,20 @@ use palmistry_math::number::MOST_ITERATIONS;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// Contacts whose noise is not stated are weighed as if they had errors of this part of their distances: what is left by the true state of exact readings is rounding and the rule of integration, a thousandth of that
-/// or less. How much may be left is for `SolidState::fits`.
+/// Contacts without stated noise are weighted as if they had errors of this fraction of their distances: the residual of the true state for exact measurements is rounding and the rule of integration, a thousandth of that
+/// or less. `SolidState::fits` decides which residual is acceptable.
 const NOTHING: f64 = 1e-6;
 /// Rates below this part of a fall's, the root of gravity over the body's length, are softened.
 const SOFTENED: f64 = 3e-4;
 
-/// So many priors are drawn. After each round of them those paths that stalled lowest are refined too, so many: noise that is not stated stalls all.
+/// The number of priors that are drawn. After each round of them this many of the paths that stalled lowest are refined too: noise that is not stated stalls all.
 const DRAWS: usize = 80;
 const ROUND: usize = 20;
 const STALLED: usize = 3;
-/// How far priors are drawn from what is likely: the centre in lengths, velocity and rate in those of a fall, the inverse of the inertia in that of a ball.
+/// The standard deviations of the drawn priors about the likely state: the centre in lengths, velocity and rate in those of a fall, the inverse of the inertia in that of a ball.
 const DRAWN: [f64; 4] = [0.1, 0.1, 0.15, 0.15];
 
-/// What is known before anything is sought.
+/// Estimates and scales that are known before the search.
 struct Likely {
     centre: Vector,
     mu: f64,
@@ -38,24 +38,24 @@ struct Likely {
     /// The rate of a fall, in 1/s.
     fall: f64,
     deviations: Deviations,
-    /// What part of the record is looked at before all of it is: six times the time in which a body falls by about its size.
+    /// The first part of the record, as a fraction of it: six times the time in which a body falls by about its size.
     part: f64,
 }
 
 impl Likely {
-    fn of(readings: &SolidMeasurements) -> Option<Likely> {
+    fn of(measurements: &SolidMeasurements) -> Option<Likely> {
         // the point next to all normals through contacts of the first samples
-        let few = (readings.rows() / 20).max(3);
+        let few = (measurements.rows() / 20).max(3);
         let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
         let mut force = Vector3::zeros();
-        for palms in &readings.palms {
+        for palms in &measurements.palms {
             for (i, palm) in palms.iter().enumerate() {
-                force += readings.normal(palms, i) * (palm.torque / readings.lever(palms, i));
+                force += measurements.normal(palms, i) * (palm.torque / measurements.lever(palms, i));
             }
         }
-        for palms in &readings.palms[..few] {
+        for palms in &measurements.palms[..few] {
             for i in 0..3 {
-                let (contact, n) = (readings.contact(palms, i), readings.normal(palms, i));
+                let (contact, n) = (measurements.contact(palms, i), measurements.normal(palms, i));
                 let across = Matrix3::identity() - n * n.transpose();
                 matrix += across;
                 right += across * contact;
@@ -63,20 +63,21 @@ impl Likely {
         }
         let meeting = matrix.try_inverse()? * right;
         let mut spread = 0.0;
-        for palms in &readings.palms {
+        for palms in &measurements.palms {
             for i in 0..3 {
-                spread += (readings.contact(palms, i) - meeting).norm_squared();
+                spread += (measurements.contact(palms, i) - meeting).norm_squared();
             }
         }
-        let count = (3 * readings.rows()) as f64;
+        let count = (3 * measurements.rows()) as f64;
         let length = (spread / count).sqrt();
-        let weight = readings.gravity.norm();
-        let force = force.norm() / readings.rows() as f64;
-        let duration = readings.times[readings.rows() - 1] - readings.times[0];
+        let weight = measurements.gravity.norm();
+        let force = force.norm() / measurements.rows() as f64;
+        let duration = measurements.times[measurements.rows() - 1] - measurements.times[0];
         let usable = length > 0.0 && weight > 0.0 && force > 0.0;
-        let contact = readings.contact_deviation.max(NOTHING * length);
+        let contact = measurements.contact_deviation.max(NOTHING * length);
         let fall = (weight / length).sqrt();
-        let deviations = Deviations { contact, torque: readings.torque_deviation, softened: SOFTENED * fall };
+        let deviations =
+            Deviations { contact, torque: measurements.torque_deviation, softened: SOFTENED * fall };
         usable.then(|| Likely {
             centre: meeting.into(),
             mu: weight / force,
@@ -87,7 +88,7 @@ impl Likely {
         })
     }
 
-    /// A body like a ball at rest, moved by so many draws.
+    /// A ball that does not move, changed by random draws.
     fn drawn(&self, random: &mut ChaCha8Rng, times: f64) -> Option<Prior> {
         let mut draw = |size: f64| times * size * normal(random);
         let [centre, velocity, rate, inverse] = DRAWN;
@@ -102,15 +103,15 @@ impl Likely {
     }
 
     /// The likely part of the record, each twice as long as the one before, and all of it.
-    fn records(&self, readings: &SolidMeasurements, first: f64) -> Vec<Integrals> {
+    fn records(&self, measurements: &SolidMeasurements, first: f64) -> Vec<Integrals> {
         let mut parts = vec![first * self.part];
         while parts[parts.len() - 1] < 1.0 {
             parts.push((2.0 * parts[parts.len() - 1]).min(1.0));
         }
         let of = |part: &f64| {
             let samples = (25.0 * part / self.part).clamp(25.0, 60.0) as usize;
-            let rules = Rules::of(&readings.times, chosen(readings.rows(), *part, samples));
-            Integrals::of(readings, &rules)
+            let rules = Rules::of(&measurements.times, chosen(measurements.rows(), *part, samples));
+            Integrals::of(measurements, &rules)
         };
         parts.iter().map(of).collect()
     }
@@ -123,22 +124,22 @@ pub(super) fn chosen(rows: usize, part: f64, samples: usize) -> Vec<usize> {
     (0..samples).map(|k| k * last / (samples - 1)).collect()
 }
 
-/// The best that was found.
-pub(super) fn found(readings: &SolidMeasurements, interrupt: &dyn Fn() -> bool) -> Option<Refined> {
-    if !readings.is_whole() || readings.is_still() {
+/// The best estimate.
+pub(super) fn found(measurements: &SolidMeasurements, interrupt: &dyn Fn() -> bool) -> Option<Refined> {
+    if !measurements.is_whole() || measurements.is_still() {
         return None;
     }
-    let mut search = Search::of(readings, Likely::of(readings)?);
+    let mut search = Search::of(measurements, Likely::of(measurements)?);
     let mut random = ChaCha8Rng::seed_from_u64(1);
-    // half of the draws begin with half of what is likely enough
-    let records = [1.0, 0.5].map(|part| search.likely.records(readings, part));
+    // half of the draws start with half of that part
+    let records = [1.0, 0.5].map(|part| search.likely.records(measurements, part));
     let mut stalled: Vec<Ended> = Vec::new();
     for k in 0..DRAWS {
         if interrupt() {
             return search.told();
         }
         let prior = search.likely.drawn(&mut random, f64::from(u8::from(k > 0)));
-        let error = readings.contact_deviation / search.likely.length;
+        let error = measurements.contact_deviation / search.likely.length;
         match prior.and_then(|prior| prior.follow(&records[k % 2], error)) {
             Some(end) if end.is_through => search.refine(end.start),
             Some(end) => stalled.push(end),
@@ -159,35 +160,36 @@ pub(super) fn found(readings: &SolidMeasurements, interrupt: &dyn Fn() -> bool) 
     search.told()
 }
 
-/// Where readings have errors, so many ends that explain them are compared before one is told.
+/// Where measurements have errors, this many ends that explain them are compared before one is chosen.
 const ENDS: usize = 2;
-/// After so many that do not fit, or are no body, it is given up: what is nearly blind leads all starts along its valleys.
+/// After this many ends that do not fit, or are no body, the search stops: a barely observable state leads all starts along its valleys.
 const ASTRAY: usize = 6;
-/// A state is a rival where it leaves no more than this over the least, and an entry of it is more than so many deviations away: were the likelihood what the bound says, it would leave as much as the square of that.
+/// A state is a rival where its chi-square is no more than this above the least, and an entry of it is more than so many deviations away: if the bound were valid, the difference would be the square of that.
 const LEAVES: f64 = 25.0;
 const APART: f64 = 5.0;
 
-/// What was found until now.
+/// The state of the search.
 struct Search<'a> {
-    readings: &'a SolidMeasurements,
+    measurements: &'a SolidMeasurements,
     likely: Likely,
     whole: Rules,
     best: Option<Refined>,
-    /// All that fit: what they leave, and what they say.
+    /// All ends that fit: chi-square and entries.
     ends: Vec<(f64, [f64; UNKNOWNS])>,
-    /// How many ends are none of those.
+    /// The number of ends that do not fit.
     astray: usize,
 }
 
 impl Search<'_> {
-    fn of(readings: &SolidMeasurements, likely: Likely) -> Search<'_> {
-        let whole = Rules::of(&readings.times, (0..readings.rows()).collect());
-        Search { readings, likely, whole, best: None, ends: Vec::new(), astray: 0 }
+    fn of(measurements: &SolidMeasurements, likely: Likely) -> Search<'_> {
+        let whole = Rules::of(&measurements.times, (0..measurements.rows()).collect());
+        Search { measurements, likely, whole, best: None, ends: Vec::new(), astray: 0 }
     }
 
     fn refine(&mut self, start: Start) {
         let scale = Scale { length: self.likely.length, rate: self.likely.fall };
-        let Some(refined) = refine(self.readings, &self.whole, start, &scale, &self.likely.deviations) else {
+        let Some(refined) = refine(self.measurements, &self.whole, start, &scale, &self.likely.deviations)
+        else {
             return;
         };
         self.astray += 1;
@@ -201,15 +203,15 @@ impl Search<'_> {
         }
     }
 
-    /// Exact readings are explained by one state, and what is astray there has cost little.
+    /// Exact measurements are explained by one state, and wrong ends have cost little there.
     fn is_done(&self) -> bool {
-        match self.readings.contact_deviation > 0.0 {
+        match self.measurements.contact_deviation > 0.0 {
             true => self.ends.len() >= ENDS || self.astray >= ASTRAY,
             false => !self.ends.is_empty(),
         }
     }
 
-    /// The best, with the one that is furthest from it among those that explain the readings as well.
+    /// The best, with the one that is furthest from it among those that explain the measurements as well.
     fn told(self) -> Option<Refined> {
         let mut best = self.best?;
         let state = best.state()?;
@@ -235,8 +237,8 @@ fn is_body(found: &Refined) -> bool {
     let mut moments = moments.eigenvalues;
     moments.as_mut_slice().sort_by(f64::total_cmp);
     let [a, b, c] = moments.into();
-    let (readings, first) = (&found.corrected, &found.corrected.palms[0]);
-    let outside =
-        (0..3).all(|i| readings.normal(first, i).dot(&(state.centre - readings.contact(first, i))) > 0.0);
+    let (measurements, first) = (&found.corrected, &found.corrected.palms[0]);
+    let outside = (0..3)
+        .all(|i| measurements.normal(first, i).dot(&(state.centre - measurements.contact(first, i))) > 0.0);
     a > 0.0 && c < 1.5 * (a + b) && outside
 }

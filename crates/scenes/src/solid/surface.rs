@@ -1,4 +1,4 @@
-//! The surface of a palm: a plane, or a sphere that is fixed to it and touches it. What the two coordinates of a contact mean.
+//! The surface of a palm: a plane, or a sphere that is fixed to it and touches it, with the meaning of a contact's two coordinates.
 
 use super::vector::{Vector, along, cross, dot, scaled};
 use super::{PalmMeasurement, SolidMeasurements};
@@ -23,7 +23,7 @@ impl PalmSurface {
         (a, b, (1.0 - a * a - b * b).sqrt())
     }
 
-    /// Whether a place is on the half of the sphere that has such coordinates.
+    /// Whether a place has a point of the half of the sphere that these coordinates describe.
     pub fn has(&self, place: [f64; 2]) -> bool {
         self.is_flat() || self.root(place).2 > 0.0
     }
@@ -89,19 +89,19 @@ pub(super) struct PalmSample {
     /// That of the force about the hinge.
     pub lever: f64,
     curvature: f64,
-    /// By how much the contact moves with each of its coordinates. The normal moves by the curvature times that.
+    /// The derivatives of the contact by each of its coordinates. Those of the normal are these times the curvature.
     tangents: [Vector; 2],
-    /// By how much the lever does.
+    /// The derivatives of the lever.
     levers: [f64; 2],
 }
 
 impl PalmSample {
-    pub fn of(readings: &SolidMeasurements, row: usize, i: usize) -> PalmSample {
-        let (palm, surface) = (&readings.palms[row][i], &readings.surfaces[i]);
+    pub fn of(measurements: &SolidMeasurements, row: usize, i: usize) -> PalmSample {
+        let (palm, surface) = (&measurements.palms[row][i], &measurements.surfaces[i]);
         let [axis, up, plane] =
             [0, 1, 2].map(|k: usize| -> Vector { palm.frame.column(k).into_owned().into() });
         let place = palm.place;
-        let hinge: Vector = readings.hinges[i].into();
+        let hinge: Vector = measurements.hinges[i].into();
         let on_plane = along(&along(&hinge, place[0], &axis), place[1], &up);
         let lever = surface.lever(place);
         let (rate, force) = (palm.rate, palm.torque / lever);
@@ -131,7 +131,7 @@ impl PalmSample {
         PalmSample { normal, contact, rate, force, lever, curvature, tangents, levers }
     }
 
-    /// By how much the constraint changes with the contact's two coordinates, where the body turns at a rate and has a velocity there.
+    /// The derivatives of the constraint by the contact's two coordinates, where the body turns at a rate and has a velocity there.
     pub fn slopes(&self, omega: &Vector, velocity: &Vector) -> [f64; 2] {
         let [axis, up] = &self.tangents;
         if self.curvature == 0.0 {
@@ -144,7 +144,7 @@ impl PalmSample {
         })
     }
 
-    /// By how much the force and its moment about the origin change with the contact's two coordinates, and with the torque.
+    /// The derivatives of the force and its moment about the origin by the contact's two coordinates, and by the torque.
     pub fn wrenches(&self) -> [(Vector, Vector); 3] {
         let lever = cross(&self.contact, &self.normal);
         let by_torque = (scaled(1.0 / self.lever, &self.normal), scaled(1.0 / self.lever, &lever));

@@ -9,7 +9,7 @@ fn held(count: usize, samples: usize) -> Vec<(SpatialScene, Vec<SpatialMoment>)>
     drawn_scenes(5, count, samples, 1.76)
 }
 
-fn readings(scene: &SpatialScene, moments: &[SpatialMoment], noise: f64, seed: u64) -> SolidMeasurements {
+fn measurements(scene: &SpatialScene, moments: &[SpatialMoment], noise: f64, seed: u64) -> SolidMeasurements {
     let sensor = SpaceSensor { noise, ..SpaceSensor::default() };
     SpaceMeasurements::of(moments, &sensor, seed).solid(&scene.palms, scene.gravity, &sensor)
 }
@@ -25,13 +25,13 @@ fn true_start(truth: &[f64; UNKNOWNS]) -> flow::Start {
     flow::Start::new(part(0), part(3), part(6), inverse, truth[15]).unwrap()
 }
 
-/// The constraint and the integrals hold of motions that follow from Newton's laws and know neither.
+/// The constraint and the integrals hold for motions by Newton's laws, which use neither.
 #[test]
 fn the_true_state_leaves_nothing() {
     for (scene, moments) in held(3, 89) {
-        let readings = readings(&scene, &moments, 0.0, 1);
-        let rules = integrals::Rules::of(&readings.times, (0..readings.rows()).collect());
-        let all = integrals::Integrals::of(&readings, &rules);
+        let measurements = measurements(&scene, &moments, 0.0, 1);
+        let rules = integrals::Rules::of(&measurements.times, (0..measurements.rows()).collect());
+        let all = integrals::Integrals::of(&measurements, &rules);
         let truth = true_entries(&scene, &moments[0]);
         let start = true_start(&truth);
         let samples = constraint::expanded(&start, &all);
@@ -101,9 +101,9 @@ fn figure_5_3_on(curvatures: [f64; 3], samples: usize, duration: f64) -> (Spatia
     (scene, moments)
 }
 
-/// Errors over bounds, entry by entry, of so many seeds; and the mean of chi-square over its degrees.
+/// Errors over Cramér-Rao bounds, entry by entry, of so many seeds; and the mean of chi-square over its degrees.
 fn ratios(scene: &SpatialScene, moments: &[SpatialMoment], noise: f64, seeds: u64) -> ([f64; UNKNOWNS], f64) {
-    let exact = readings(scene, moments, 0.0, 0);
+    let exact = measurements(scene, moments, 0.0, 0);
     let truth = true_entries(scene, &moments[0]);
     let begin = true_start(&truth);
     let rules = integrals::Rules::of(&exact.times, (0..exact.rows()).collect());
@@ -114,7 +114,7 @@ fn ratios(scene: &SpatialScene, moments: &[SpatialMoment], noise: f64, seeds: u6
     let mut squares = [0.0; UNKNOWNS];
     let mut chi = 0.0;
     for seed in 1..=seeds {
-        let noisy = readings(scene, moments, noise, seed);
+        let noisy = measurements(scene, moments, noise, seed);
         let found = refine::refine(&noisy, &rules, begin, &scale, &deviations).unwrap().state().unwrap();
         chi += found.chi_square / found.degrees as f64;
         for ((sum, found), truth) in squares.iter_mut().zip(found.entries()).zip(truth) {
@@ -136,13 +136,13 @@ fn many(full: usize, quick: usize) -> usize {
 fn bodies_are_found_without_a_guess() {
     let scenes = held(many(9, 3), 177).into_iter().chain(drawn_scenes(6, many(9, 3), 177, 1.76));
     for (place, (scene, moments)) in scenes.enumerate() {
-        let state = readings(&scene, &moments, 0.0, 1).first_state().unwrap();
+        let state = measurements(&scene, &moments, 0.0, 1).first_state().unwrap();
         let error = relative_error(&state.entries(), &true_entries(&scene, &moments[0]));
         assert!(error < 1e-8 && state.fits(), "{place}: {error:e}");
     }
 }
 
-/// What the prior's weight is multiplied with has the derivatives of differences.
+/// The prior's rows have the derivatives that differences give.
 #[test]
 fn the_prior_changes_as_it_says() {
     let (scene, moments) = held(1, 89).remove(0);
@@ -164,11 +164,11 @@ fn the_prior_changes_as_it_says() {
     }
 }
 
-/// The thesis's search, which is told rate, inertia and mass, finds centre and turn from some seeds; others end in a wrong minimum.
+/// The thesis's search, with known rate, inertia and mass, finds centre and turn from some seeds; others end in a wrong minimum.
 #[test]
 fn two_stages_are_a_base_line() {
     let (scene, moments) = figure_5_3(177, 4.4);
-    let exact = readings(&scene, &moments, 0.0, 1);
+    let exact = measurements(&scene, &moments, 0.0, 1);
     let truth = true_entries(&scene, &moments[0]);
     let known = KnownSolid {
         rate: Vector3::new(truth[6], truth[7], truth[8]),
@@ -184,7 +184,7 @@ fn two_stages_are_a_base_line() {
         let (centre, turned) =
             ((end.centre - moments[0].centre).norm(), (end.inertia_over_mass - inertia).norm());
         let is_near = centre < 1e-6 && turned < 1e-5;
-        // what is left tells which
+        // the residual distinguishes them
         assert_eq!(is_near, end.left < 1e-6, "{seed}: {centre:e} m, {turned:e} m^2, {:e} m/s left", end.left);
         found += usize::from(is_near);
     }
@@ -194,17 +194,17 @@ fn two_stages_are_a_base_line() {
     assert!(short.two_stages(&known, 10, 1).is_none());
 }
 
-/// A state that leaves less than a millionth of the body and is wrong is not one that fits: of the first scenes at half the samples, one ends so.
+/// A wrong state with a residual below a millionth of the body does not fit: of the first scenes at half the samples, one ends so.
 #[test]
 fn a_wrong_state_that_leaves_little_says_so() {
     for (scene, moments) in held(3, 89) {
-        let Some(state) = readings(&scene, &moments, 0.0, 1).first_state() else { continue };
+        let Some(state) = measurements(&scene, &moments, 0.0, 1).first_state() else { continue };
         let error = relative_error(&state.entries(), &true_entries(&scene, &moments[0]));
         assert!(error < 1e-6 || !state.fits(), "{error:e}, {:e} m left", state.rms_residual);
     }
-    // noise that is not stated is told from what it leaves, which looks like noise
+    // noise that is not stated is recognised by the residuals, which look like noise
     let (scene, moments) = figure_5_3(89, 3.52);
-    let mut unstated = readings(&scene, &moments, 1e-4, 1);
+    let mut unstated = measurements(&scene, &moments, 1e-4, 1);
     unstated.contact_deviation = 0.0;
     let begin = true_start(&true_entries(&scene, &moments[0]));
     let rules = integrals::Rules::of(&unstated.times, (0..unstated.rows()).collect());
@@ -212,7 +212,7 @@ fn a_wrong_state_that_leaves_little_says_so() {
     let deviations = whiten::Deviations { contact: 1e-6, torque: 0.0, softened: 1e-3 };
     let state = refine::refine(&unstated, &rules, begin, &scale, &deviations).unwrap().state().unwrap();
     assert!(!state.is_stated && state.fits(), "{}", state.ratio);
-    // what a wrong state leaves is alike from sample to sample; torques that are said to err do not excuse it
+    // residuals of a wrong state are correlated from sample to sample; stated errors of torques do not excuse it
     let alike = SolidState { ratio: 0.5, rms_residual: 0.5 * state.weighed, chi_square: 1.0, ..state };
     for is_stated in [false, true] {
         assert!(!SolidState { is_stated, ..alike.clone() }.fits(), "{is_stated}");
@@ -221,7 +221,7 @@ fn a_wrong_state_that_leaves_little_says_so() {
     assert!(state.rms_residual > 2e-5 && state.rms_residual < 1e-4, "{:e}", state.rms_residual);
 }
 
-/// With noise no entry errs by more than the bound allows, and chi-square is what its degrees say.
+/// With noise the errors of all entries are within the Cramér-Rao bound, and chi-square is that of its degrees.
 #[test]
 fn errors_are_those_of_the_bound() {
     let seeds = many(200, 20);
@@ -250,13 +250,13 @@ fn errors_on_spheres_are_those_of_the_bound() {
 #[test]
 fn what_a_contact_changes_on_a_sphere_is_what_differences_say() {
     let (scene, moments) = figure_5_3_on([-0.05, 0.3, 0.0], 89, 1.76);
-    let mut exact = readings(&scene, &moments, 0.0, 1);
+    let mut exact = measurements(&scene, &moments, 0.0, 1);
     for (k, palm) in exact.palms[40].iter_mut().enumerate() {
         palm.rate = 0.3 - 0.2 * k as f64;
     }
     let (omega, speed, centre) = ([0.3, -0.5, 0.7], [0.2, 0.1, -0.4], [-0.4, -0.7, 3.5]);
-    let of = |readings: &SolidMeasurements, i: usize| {
-        let palm = surface::PalmSample::of(readings, 40, i);
+    let of = |measurements: &SolidMeasurements, i: usize| {
+        let palm = surface::PalmSample::of(measurements, 40, i);
         let velocity =
             vector::along(&speed, 1.0, &vector::cross(&omega, &vector::along(&palm.contact, -1.0, &centre)));
         let constraint = vector::dot(&palm.normal, &velocity) - palm.rate * palm.lever;
@@ -268,12 +268,12 @@ fn what_a_contact_changes_on_a_sphere_is_what_differences_say() {
         let (_, slopes, wrenches) = of(&exact, i);
         for error in 0..3 {
             let moved = |by: f64| {
-                let mut readings = exact.clone();
+                let mut measurements = exact.clone();
                 match error {
-                    2 => readings.palms[40][i].torque += by,
-                    side => readings.palms[40][i].place[side] += by,
+                    2 => measurements.palms[40][i].torque += by,
+                    side => measurements.palms[40][i].place[side] += by,
                 }
-                of(&readings, i).0
+                of(&measurements, i).0
             };
             let (above, below) = (moved(1e-5), moved(-1e-5));
             let slope = if error < 2 { slopes[error] } else { 0.0 };
@@ -298,7 +298,7 @@ fn bodies_on_spheres_are_found_without_a_guess() {
         let times: Vec<f64> = (0..177).map(|k| 0.01 * f64::from(k)).collect();
         let found = simulate_solid(&scene, &times).unwrap();
         assert_eq!(found.ended, SpatialEnded::Completed);
-        let state = readings(&scene, &found.moments, 0.0, 1).first_state().unwrap();
+        let state = measurements(&scene, &found.moments, 0.0, 1).first_state().unwrap();
         let error = relative_error(&state.entries(), &true_entries(&scene, &found.moments[0]));
         assert!(error < 1e-8 && state.fits(), "{place}: {error:e}");
     }
@@ -308,7 +308,7 @@ fn bodies_on_spheres_are_found_without_a_guess() {
 #[test]
 fn the_body_was_touched_there() {
     let (scene, moments) = held(1, 177).remove(0);
-    let (_, poses) = readings(&scene, &moments, 0.0, 1).explained(&|| false).unwrap();
+    let (_, poses) = measurements(&scene, &moments, 0.0, 1).explained(&|| false).unwrap();
     let turn = moments[0].orientation.matrix();
     for (pose, moment) in poses.iter().zip(&moments) {
         assert!((pose.centre - moment.centre).norm() < 1e-7);
@@ -324,19 +324,19 @@ fn the_body_was_touched_there() {
 fn what_is_no_record_gives_no_state() {
     let (scene, moments) = held(1, 89).remove(0);
     let changed = |change: fn(&mut SolidMeasurements)| {
-        let mut readings = readings(&scene, &moments, 0.0, 1);
-        change(&mut readings);
-        readings.first_state()
+        let mut measurements = measurements(&scene, &moments, 0.0, 1);
+        change(&mut measurements);
+        measurements.first_state()
     };
-    assert!(changed(|readings| readings.palms[3][0].place[0] = f64::NAN).is_none());
-    assert!(changed(|readings| readings.palms[3][0].place[1] = 0.0).is_none());
-    assert!(changed(|readings| readings.times[4] = readings.times[3]).is_none());
-    assert!(changed(|readings| readings.times.truncate(5)).is_none());
-    assert!(changed(|readings| readings.palms.clear()).is_none());
+    assert!(changed(|measurements| measurements.palms[3][0].place[0] = f64::NAN).is_none());
+    assert!(changed(|measurements| measurements.palms[3][0].place[1] = 0.0).is_none());
+    assert!(changed(|measurements| measurements.times[4] = measurements.times[3]).is_none());
+    assert!(changed(|measurements| measurements.times.truncate(5)).is_none());
+    assert!(changed(|measurements| measurements.palms.clear()).is_none());
 }
 
-/// Contacts read to 1 mm over 1.76 s: of a scene that tells little, a state that explains the readings and is 40 % off was told to fit with errors of a few percent. It says now that its bound says nothing; where the scene
-/// tells enough, the state is within five deviations. Oracle: the bodies that were simulated.
+/// Contacts measured to 1 mm over 1.76 s: for a barely observable scene, a state that explains the measurements and is 40 % off once had bounds of a few percent. Now its bound is reported as invalid; where the scene
+/// is observable, the state is within five deviations. Oracle: the bodies that were simulated.
 #[test]
 fn no_bound_is_told_that_noise_makes_up() {
     let wrong = [
@@ -346,7 +346,7 @@ fn no_bound_is_told_that_noise_makes_up() {
     let scenes = drawn_scenes(6, many(9, 6), 177, 1.76);
     for (place, begin) in [(5, Some(wrong)), (8, None)].into_iter().take(many(2, 1)) {
         let (scene, moments) = &scenes[place];
-        let noisy = readings(scene, moments, 1e-3, 1);
+        let noisy = measurements(scene, moments, 1e-3, 1);
         let truth = true_entries(scene, &moments[0]);
         let rules = integrals::Rules::of(&noisy.times, (0..noisy.rows()).collect());
         let scale = change::Scale { length: 1.85, rate: 2.3 };
@@ -356,10 +356,10 @@ fn no_bound_is_told_that_noise_makes_up() {
         let error = relative_error(&state.entries(), &truth);
         assert!(state.fits(), "{place}: {}", state.chi_square);
         if place == 5 {
-            assert!(error > 0.3 && state.is_blind(), "{error:e} {}", state.bent);
+            assert!(error > 0.3 && state.is_unobservable(), "{error:e} {}", state.bent);
             continue;
         }
-        assert!(!state.is_blind() && error < 0.03, "{error:e} {} {}", state.bent, state.curved);
+        assert!(!state.is_unobservable() && error < 0.03, "{error:e} {} {}", state.bent, state.curved);
         for ((found, truth), deviation) in state.entries().iter().zip(truth).zip(state.deviations()) {
             assert!((found - truth).abs() < 5.0 * deviation, "{found} {truth} {deviation}");
         }

@@ -1,4 +1,4 @@
-//! Where the body was touched, in its own frame: what all shapes are made of.
+//! The contacts in the body's own frame, on which all estimates of the shape are based.
 
 use super::constraint::expanded;
 use super::flow::Turned;
@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 /// A contact in the body's frame, which is the world's at the first sample, about the centre of mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolidTouch {
-    /// Where, in m.
+    /// In m.
     pub point: Vector3<f64>,
     /// The body's outward normal.
     pub normal: Vector3<f64>,
@@ -23,18 +23,18 @@ pub struct SolidPose {
     pub time: f64,
     /// The centre of mass.
     pub centre: Vector3<f64>,
-    /// What takes the body's frame to the world's.
+    /// The rotation from the body's frame to the world's.
     pub turn: Matrix3<f64>,
     /// By palm.
     pub touches: [SolidTouch; 3],
 }
 
 impl Refined {
-    /// The body at all samples, contacts without the errors that they likely have.
+    /// The body at all samples, contacts without their likeliest errors.
     pub fn poses(&self) -> Vec<SolidPose> {
-        let readings = &self.corrected;
-        let rules = Rules::of(&readings.times, (0..readings.rows()).collect());
-        let all = Integrals::of(readings, &rules);
+        let measurements = &self.corrected;
+        let rules = Rules::of(&measurements.times, (0..measurements.rows()).collect());
+        let all = Integrals::of(measurements, &rules);
         let samples = expanded(&self.start, &all);
         let pose = |(k, sample): (usize, &super::constraint::Constrained)| {
             let Turned { turn, .. } = sample.at;
@@ -43,7 +43,7 @@ impl Refined {
                 normal: -Vector3::from(back(&turn, &palm.normal)).normalize(),
             });
             SolidPose {
-                time: readings.times[k],
+                time: measurements.times[k],
                 centre: sample.centre.into(),
                 turn: Matrix3::from_fn(|i, j| turn[i][j]),
                 touches,

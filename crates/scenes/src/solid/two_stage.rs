@@ -1,7 +1,7 @@
-//! The thesis's own search (section 5.5), as a base line: rate, inertia and mass are known, and six numbers are sought, how the body is turned and its support radii at the three contacts of the first sample.
+//! The thesis's own search (section 5.5), for comparison: rate, inertia and mass are known, and six numbers are estimated, the orientation of the body and its support radii at the three contacts of the first sample.
 //!
-//! First they are drawn evenly, and what leaves least over a short time is kept; then simplex searches (J. A. Nelder and R. Mead, A simplex method for function minimization, Computer Journal 7, 1965), each from
-//! where the one before ended and over twice the time. Centre and velocity follow from radii and constraints of the first sample. What is left is the integral of the three constraints squared, to which the
+//! First they are drawn evenly, and the draw with the least cost over a short time is kept; then simplex searches (J. A. Nelder and R. Mead, A simplex method for function minimization, Computer Journal 7, 1965), each from
+//! where the one before ended and over twice the time. Centre and velocity follow from radii and constraints of the first sample. The cost is the integral of the three constraints squared, to which the
 //! thesis adds how far its twelve equations for nine numbers of the contacts drift apart.
 
 use super::SolidMeasurements;
@@ -14,7 +14,7 @@ use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// What the thesis takes as known, in SI units.
+/// The quantities that the thesis takes as known, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KnownSolid {
     /// The angular velocity at the first sample.
@@ -26,7 +26,7 @@ pub struct KnownSolid {
     pub radii: [f64; 2],
 }
 
-/// What the two stages end with.
+/// The result of the two stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoStages {
     /// The centre of mass at the first sample.
@@ -39,16 +39,16 @@ pub struct TwoStages {
 /// Three of a rotation vector that is added, in rad, and three radii in m.
 type Six = SVector<f64, 6>;
 
-/// The part of the record that is looked at first, with so many samples; and those of the whole.
+/// The part of the record that is used first, with so many samples; and those of the whole.
 const FIRST: (f64, usize) = (1.0 / 16.0, 6);
 const SAMPLES: usize = 60;
-/// The first simplex: in rad, and in parts of the radii's range.
+/// The first simplex: in rad, and relative to the radii's range.
 const SIMPLEX: [f64; 2] = [0.1, 0.05];
 /// Steps of one search.
 const STEPS: usize = 400;
 
 struct Sought<'a> {
-    readings: &'a SolidMeasurements,
+    measurements: &'a SolidMeasurements,
     known: &'a KnownSolid,
     from: UnitQuaternion<f64>,
 }
@@ -60,15 +60,15 @@ impl Sought<'_> {
         let turn = turn.to_rotation_matrix();
         let k = self.known.inertia_over_mass.try_inverse()?;
         let k = turn.matrix() * k * turn.matrix().transpose();
-        let palms = &self.readings.palms[0];
-        let contacts: [Vector3<f64>; 3] = std::array::from_fn(|i| self.readings.contact(palms, i));
-        let normals: [Vector3<f64>; 3] = std::array::from_fn(|i| self.readings.normal(palms, i));
+        let palms = &self.measurements.palms[0];
+        let contacts: [Vector3<f64>; 3] = std::array::from_fn(|i| self.measurements.contact(palms, i));
+        let normals: [Vector3<f64>; 3] = std::array::from_fn(|i| self.measurements.normal(palms, i));
         let solve = Matrix3::from_fn(|i, j| normals[i][j]).try_inverse()?;
         let centre = solve * Vector3::from_fn(|i, _| normals[i].dot(&contacts[i]) + six[3 + i]);
         let velocity = solve
             * Vector3::from_fn(|i, _| {
                 let moved = self.known.rate.cross(&(contacts[i] - centre));
-                palms[i].rate * self.readings.lever(palms, i) - normals[i].dot(&moved)
+                palms[i].rate * self.measurements.lever(palms, i) - normals[i].dot(&moved)
             });
         let (rate, mu) = (self.known.rate.into(), 1.0 / self.known.mass);
         Start::new(centre.into(), velocity.into(), rate, PLACES.map(|place| k[place]), mu)
@@ -124,7 +124,7 @@ fn simplex(cost: &dyn Fn(&Six) -> f64, from: Six, size: &Six) -> Six {
 }
 
 impl SolidMeasurements {
-    /// The thesis's search with so many draws; none where readings are too few or nothing was found.
+    /// The thesis's search with so many draws; none where measurements are too few or nothing was found.
     pub fn two_stages(&self, known: &KnownSolid, draws: usize, seed: u64) -> Option<TwoStages> {
         if !self.is_whole() {
             return None;
@@ -143,13 +143,13 @@ impl SolidMeasurements {
             let from = UnitQuaternion::new_normalize(Quaternion::new(draw(), draw(), draw(), draw()));
             let six =
                 Six::from_fn(|i, _| if i < 3 { 0.0 } else { low + (high - low) * random.random::<f64>() });
-            let cost = Sought { readings: self, known, from }.cost(&short, &six);
+            let cost = Sought { measurements: self, known, from }.cost(&short, &six);
             if best.as_ref().is_none_or(|best| cost < best.2) {
                 best = Some((from, six, cost));
             }
         }
         let (from, mut six, _) = best?;
-        let sought = Sought { readings: self, known, from };
+        let sought = Sought { measurements: self, known, from };
         let range = SIMPLEX[1] * (high - low);
         let mut size = Six::from_fn(|i, _| if i < 3 { SIMPLEX[0] } else { range });
         let mut part = FIRST.0;

@@ -1,4 +1,4 @@
-//! Three numbers, and matrices of three rows: plain arrays, for what runs at every sample.
+//! Vectors of three numbers, and matrices of three rows: plain arrays, for computations at every sample.
 
 pub(super) type Vector = [f64; 3];
 /// Rows.

@@ -1,9 +1,9 @@
 //! Errors of contacts and torques, carried through the integrals.
 //!
-//! An error at a sample gives the body an impulse `mu dF` and its angular momentum over mass one of `mu (dG - c x dF)`, each for the time that the sample stands for (the trapezoidal rule); what comes of it later is what would come
+//! An error at a sample gives the body an impulse `mu dF` and its angular momentum over mass one of `mu (dG - c x dF)`, each for the time that the sample stands for (the trapezoidal rule); its later effect is that
 //! of another initial state, turn included. So the constraints are `y_k = J_k z_k + D_k e_k`, `z_{k+1} = z_k + B_k e_k`, with the derivatives `J_k` by 12 numbers of that state. The innovations of this
-//! are white (Kalman's filter where the noise of readings is that of the state); `e = D^T eta + B^T lambda` is the likeliest error, by the adjoint. So far by the trapezoidal rule; readings are integrated by a better one (`rule`), and
-//! errors are the likeliest, and what is left stationary where they are, only where both agree: what the filter's rule leaves is filtered again.
+//! are white (Kalman's filter where the noise of measurements is that of the state); `e = D^T eta + B^T lambda` is the likeliest error, by the adjoint. So far by the trapezoidal rule; measurements are integrated by a better one (`rule`), and
+//! errors are the likeliest, and the residuals stationary where they are, only where both agree: the difference that the filter's rule leaves is filtered again.
 
 use super::constraint::Constrained;
 use super::flow::{Start, TURN};
@@ -18,25 +18,25 @@ pub(super) const ERRORS: usize = 9;
 /// The numbers of the initial state that errors move.
 const MOVED: usize = 12;
 
-/// The filter takes integrals by the trapezoidal rule. So many times at most what the rule of integration leaves of that is taken away, and until this part of the first sum of squares is left.
+/// The filter takes integrals by the trapezoidal rule. The most iterations that remove its difference from the rule of integration, and the fraction of the first sum of squares at which they stop.
 const CORRECTED: usize = 20;
 const SOLVED: f64 = 1e-14;
 
-/// How large errors are, and what rates count at least.
+/// The sizes of errors, and the least rate.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Deviations {
     /// In m.
     pub contact: f64,
     /// In N m.
     pub torque: f64,
-    /// In rad/s: no constraint weighs more than that of a body that turns at this rate against its palm.
+    /// In rad/s: no constraint is weighted more than that of a body that turns at this rate against its palm.
     pub softened: f64,
 }
 
 /// One sample of the filter.
 struct Stage {
     by: [[f64; MOVED]; 3],
-    /// By how much errors of contacts change their own constraints, besides what they carry on.
+    /// The derivatives of the constraints by errors of their own contacts, besides those through the integrals.
     slopes: [f64; 6],
     impulse: [[f64; ERRORS]; MOVED],
     spacing: f64,
@@ -54,7 +54,7 @@ pub(super) struct Whitener {
     softened: f64,
 }
 
-/// What errors of unit size do to the initial state: a column an error.
+/// The change of the initial state by errors of unit size: a column an error.
 fn impulses(
     start: &Start,
     node: &Node,
@@ -64,7 +64,7 @@ fn impulses(
     deviations: &Deviations,
 ) -> Option<[[f64; ERRORS]; MOVED]> {
     let mut all = [[0.0; ERRORS]; MOVED];
-    // the turn's derivative by the turn at the beginning, for its inverse
+    // the turn's derivative by the turn at the first sample, for its inverse
     let xi = &sample.at.moved;
     let [a, b, c] = [xi[TURN], xi[TURN + 1], xi[TURN + 2]];
     let volume = dot(&a, &cross(&b, &c));
@@ -82,7 +82,7 @@ fn impulses(
             let velocity: Vector = scaled(t, &force);
             let centre = scaled(-node.time, &velocity);
             let spun = scaled(t, &along(&moment, -1.0, &cross(&sample.centre, &force)));
-            // what centre and velocity at the beginning would do to the momentum until now
+            // the effect of centre and velocity at the first sample on the momentum until now
             let drawn = along(&cross(&centre, &node.force), 1.0, &cross(&velocity, &node.first));
             let momentum = along(&spun, start.mu, &drawn);
             let mut turned = [0.0; 3];
@@ -113,7 +113,7 @@ impl Whitener {
         deviations: &Deviations,
         is_stated: bool,
     ) -> Option<Whitener> {
-        // readings that are exact have errors of the rule alone, alike from sample to sample, and rounding counts for more
+        // errors of exact measurements are those of the rule alone, correlated from sample to sample, and rounding counts for more
         let pieces = if is_stated { rules.whole.clone() } else { rules.trapezoids() };
         let spacing = rules.spacing();
         let softened = (deviations.contact * deviations.softened).powi(2);
@@ -122,7 +122,7 @@ impl Whitener {
         for (k, sample) in samples.iter().enumerate() {
             let impulse = impulses(start, &all.nodes[k], &all.palms[k], sample, spacing[k], deviations)?;
             let by: [[f64; MOVED]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| sample.by[i][j]));
-            // what of an error's impulse has come by its own sample
+            // the fraction of an error's impulse that has arrived at its own sample
             let arrived = match k {
                 0 => 0.0,
                 _ if k + 1 == samples.len() => 1.0,
@@ -202,7 +202,7 @@ impl Whitener {
         all
     }
 
-    /// What a column of constraints is multiplied with in the sum of the squares of the likeliest errors that make it, by the filter's own rule.
+    /// The multipliers of a column of constraints in the sum of the squares of the likeliest errors that make it, by the filter's own rule.
     fn filtered(&self, column: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut all = self.innovations(column);
         let mut ahead = [0.0; MOVED];
@@ -255,7 +255,7 @@ impl Whitener {
 
     /// The likeliest errors, in units of their deviations, from multipliers.
     pub fn likely(&self, multipliers: &[[f64; 3]]) -> Vec<[f64; ERRORS]> {
-        // by interval: what all samples after it say of the state there
+        // by interval: the information of all samples after it about the state there
         let mut after = vec![[0.0; MOVED]; self.pieces.len()];
         let mut sum = [0.0; MOVED];
         for (k, stage) in self.stages.iter().enumerate().skip(1).rev() {

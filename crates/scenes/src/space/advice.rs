@@ -1,9 +1,9 @@
-//! Runs that widen what is certain of a body in space: how to lay it on the palms and set it turning, so that the hull of all contacts grows as much as a search finds.
+//! Runs that enlarge the certain part of a body in space: how to lay it on the palms and set it turning, so that the hull of all contacts grows as much as a search finds.
 //!
 //! A run lays the body in the pose of balance to which it falls from an orientation, sets it turning, and lasts as long as the scene. Runs are chosen one after another, each the one that makes
-//! the hull of all contacts so far greatest; half of the trials of a run are drawn at random, the others vary the best. Beside the plan stands what as many of the random ones would have
-//! told. Each trial has a random stream of its own: the answer is that of the seed, with any number of threads. It is a search's best, one run at a time, and no
-//! proof that there is nothing better.
+//! the hull of all contacts so far greatest; half of the trials of a run are drawn at random, the others vary the best. The plan is compared with as many of the random
+//! runs. Each trial has a random stream of its own: the answer depends on the seed alone, not on the number of threads. It is a search's best, one run at a time; nothing
+//! proves that there is no better one.
 
 use super::run::{SpaceTruth, simulated};
 use super::scene::SpaceScene;
@@ -17,16 +17,16 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// So many runs are varied.
+/// This many runs are varied.
 const PARENTS: usize = 4;
 
-/// So many are tried before the best are chosen anew.
+/// This many are tried before the best are chosen anew.
 const BATCH: usize = 8;
 
-/// Orientations and rates are told in so many parts of a rad and a rad/s: what is printed is what was tried.
+/// Orientations and rates are rounded to `1/PARTS` rad and rad/s, so that the printed run is the one that was tried.
 const PARTS: f64 = 1e3;
 
-/// What is asked.
+/// The question: runs, trials, greatest rate, seed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunsQuestion {
     /// How many runs there are to be.
@@ -35,7 +35,7 @@ pub struct RunsQuestion {
     pub trials: usize,
     /// The greatest rate at which a body is set turning, in rad/s.
     pub rate: f64,
-    /// Where random numbers begin.
+    /// The seed of the random numbers.
     pub seed: u64,
 }
 
@@ -51,26 +51,26 @@ pub struct Laying {
 /// A run of a plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedRun {
-    /// How it begins.
+    /// Its initial pose and rate.
     pub laying: Laying,
     /// The volume of the hull of all contacts of this run and those before it, in m^3.
     pub hull: Interval,
-    /// The volume that the half-spaces leave, in m^3; or why none is known: they do not bound it, or a contact cannot be used.
+    /// The volume of the intersection of half-spaces, in m^3; or why none is known: they do not bound it, or a contact cannot be used.
     pub outer: Result<Interval, String>,
     /// Of as many runs drawn at random: the hull's volume in the median and at most, in m^3; none where too few of them held the body.
     pub random: Option<[f64; 2]>,
 }
 
-/// What is advised.
+/// The advice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunsAdvice {
     /// How many runs were tried.
     pub tried: usize,
     /// How many of them held the body to the end.
     pub held: usize,
-    /// How many rows of random runs the plan is held against.
+    /// The number of rows of random runs that the plan is compared with.
     pub random_rows: usize,
-    /// The runs, in their order; fewer than were asked where no trial held the body, or it was interrupted.
+    /// The runs, in their order; fewer than required where no trial held the body, or it was interrupted.
     pub plan: Vec<PlannedRun>,
     /// The body's own volume, in m^3.
     pub volume: f64,
@@ -81,14 +81,14 @@ pub struct RunsAdvice {
 struct Held {
     laying: Laying,
     touches: Vec<SurfaceTouch>,
-    /// Of the hull with all runs before it.
+    /// The volume of the hull with all runs before it.
     worth: f64,
 }
 
-/// Seeks runs of a scene's body on its palms, which move as the scene says; `done` is told of each that was tried.
+/// Seeks runs of a scene's body on its palms, which move as the scene says; `done` is called after each trial.
 ///
 /// # Errors
-/// Where the scene describes no body, or one that cannot be simulated as the scene has it, with the place in the scene.
+/// Where the scene describes no body, or one that cannot be simulated on its palms, with the place in the scene.
 pub fn advise_runs(
     scene: &SpaceScene,
     question: &RunsQuestion,
@@ -137,7 +137,7 @@ pub fn advise_runs(
         advice.tried += count;
         let Some(best) = best.into_iter().next() else { break };
         touched.extend(best.touches);
-        // contacts in a plane, as those of one body that lies still, hold nothing
+        // contacts in a plane, as those of one body that lies still, have no volume
         let hull = contact_hull(&touched).map_or(Interval::point(0.0), |hull| hull.volume);
         let outer = match half_space_intersection(&touched) {
             Ok(OuterBound::Bounded(region)) => Ok(region.volume),
@@ -150,7 +150,7 @@ pub fn advise_runs(
     Ok(advice)
 }
 
-/// Rows of as many random runs as the plan has, and what their hulls come to.
+/// Rows of as many random runs as the plan has, and the volumes of their hulls.
 fn held_against(random_runs: &[Vec<SurfaceTouch>], advice: &mut RunsAdvice) {
     let length = advice.plan.len().max(1);
     let rows: Vec<Vec<f64>> = random_runs
@@ -172,7 +172,7 @@ fn held_against(random_runs: &[Vec<SurfaceTouch>], advice: &mut RunsAdvice) {
     }
 }
 
-/// What the hull of contacts holds for certain; nothing where they lie in a plane.
+/// The certain volume of the hull of contacts; zero where they lie in a plane.
 fn volume(touches: &[SurfaceTouch]) -> f64 {
     contact_hull(touches).map_or(0.0, |hull| hull.volume.low())
 }
@@ -193,7 +193,7 @@ fn tried(scene: &SpaceScene, laying: Laying, before: &[SurfaceTouch]) -> Option<
     Some(Held { laying, touches, worth })
 }
 
-/// In round numbers, towards zero: so rounding leaves no limit.
+/// In round numbers, towards zero: so rounding exceeds no limit.
 fn told(vector: [f64; 3]) -> [f64; 3] {
     vector.map(|x| (x * PARTS).trunc() / PARTS)
 }

@@ -1,4 +1,4 @@
-//! Scenes in space that are drawn: what searches without a guess are counted on.
+//! Random scenes in space, on which searches without a guess are tested.
 
 use nalgebra::Vector3;
 use palmistry_bodies::mechanics::moving::{Course, Oscillation};
@@ -71,7 +71,7 @@ fn drawn(draws: &mut Draws, kind: usize) -> Option<SpatialScene> {
     Some(scene)
 }
 
-/// So many scenes of one seed in which all palms hold the body for a duration in s, with the moments at so many samples. Bodies are
+/// This many scenes of one seed in which all palms hold the body for a duration in s, with the moments at so many samples. Bodies are
 /// of three kinds by turns (ellipsoids, harmonics, blends) of about 1 to 2.5 m, on palms that by turns are at rest, turn at constant rates, swing.
 pub fn drawn_scenes(
     seed: u64,
@@ -92,7 +92,7 @@ pub fn drawn_scenes(
     held
 }
 
-/// What is true of the body at a moment, in the order of [`SolidState::entries`](crate::solid::SolidState::entries): centre, velocity, rate, inertia over mass, 1/m.
+/// The true state of the body at a moment, in the order of [`SolidState::entries`](crate::solid::SolidState::entries): centre, velocity, rate, inertia over mass, 1/m.
 pub fn true_entries(scene: &SpatialScene, moment: &SpatialMoment) -> [f64; 16] {
     let turn = moment.orientation.matrix();
     let j = turn * scene.inertia_over_mass * turn.transpose();

@@ -2,7 +2,7 @@
 
 use super::super::scene::place::Places;
 use super::super::scene::sample_times;
-use super::readings::SpaceSensor;
+use super::measurements::SpaceSensor;
 use super::record::COLUMNS;
 use super::scene::{SpaceBody, SpaceObserver, SpaceScene};
 use super::shape::ShapeKeys;

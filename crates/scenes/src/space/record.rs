@@ -1,6 +1,6 @@
-//! Readings as a table, for other programs and from them.
+//! Measurements as a table, for other programs and from them.
 
-use super::readings::{PalmAtSample, SpaceMeasurements, surface};
+use super::measurements::{PalmAtSample, SpaceMeasurements, surface};
 use super::scene::SpaceScene;
 use crate::slow::derivative;
 use crate::solid::FEWEST;
@@ -31,15 +31,15 @@ pub(super) const COLUMNS: [&str; 18] = [
     "torque3",
 ];
 
-/// Columns of a palm, and those of them that are differentiated where they are not there.
+/// Columns of a palm, and those of them that are differentiated where they are missing.
 const OF_A_PALM: usize = 6;
 const DIFFERENTIATED: [usize; 2] = [1, 2];
 
-/// A palm's angle is differentiated through so many samples.
+/// A palm's angle is differentiated through this many samples.
 const POINTS: usize = 9;
 
 impl SpaceMeasurements {
-    /// The readings as a table that other programs, and this one, read.
+    /// The measurements as a table that this program and others can read.
     ///
     /// # Errors
     /// None that a simulation brings about.
@@ -58,7 +58,7 @@ impl SpaceMeasurements {
         Record::new(self.times.clone(), COLUMNS.iter().enumerate().map(column).collect())
     }
 
-    /// Readings of a file. Rates and accelerations of palms that it has not are those of the polynomial through nine angles.
+    /// The measurements of a file. Missing rates and accelerations of palms are those of the polynomial through nine angles.
     ///
     /// # Errors
     /// The file cannot be read, lacks a column, or has a faulty row or too few.
@@ -85,7 +85,7 @@ impl SpaceMeasurements {
             let column = match (told, DIFFERENTIATED.contains(&(place % OF_A_PALM))) {
                 (Some(told), _) => told.to_vec(),
                 (None, true) => derivative(&times, &columns[place - 1], POINTS),
-                // it was asked for
+                // it was required
                 (None, false) => Vec::new(),
             };
             if let Some(row) = column.iter().position(|value| !value.is_finite()) {

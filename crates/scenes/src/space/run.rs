@@ -1,8 +1,8 @@
-//! A scene in space, simulated or recorded, and what its readings tell with nothing known.
+//! A scene in space, simulated or recorded, and the estimates from its measurements without prior knowledge.
 
 use super::answers::{PoseError, SpaceUpdate, SpaceVerdict};
 use super::drawn::true_entries;
-use super::readings::SpaceMeasurements;
+use super::measurements::SpaceMeasurements;
 use super::scene::SpaceScene;
 use super::touched::{SpaceShape, chained};
 use crate::solid::{FEWEST, SolidMeasurements, SolidPose};
@@ -16,10 +16,10 @@ use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
-/// Of the integrator.
+/// The tolerance of the integrator.
 const TOLERANCE: f64 = 1e-13;
 
-/// What was simulated.
+/// The simulated body and motion.
 #[derive(Clone, Debug)]
 pub struct SpaceTruth {
     /// Body, palms and start.
@@ -28,18 +28,18 @@ pub struct SpaceTruth {
     pub trajectory: SpatialTrajectory,
 }
 
-/// A scene with its readings.
+/// A scene with its measurements.
 #[derive(Clone, Debug)]
 pub struct SpaceExperiment {
     /// The scene.
     pub scene: SpaceScene,
-    /// None where readings are recorded.
+    /// None where measurements are recorded.
     pub truth: Option<SpaceTruth>,
-    /// What the palms tell.
-    pub readings: SpaceMeasurements,
+    /// The measurements.
+    pub measurements: SpaceMeasurements,
 }
 
-/// What all of it tells.
+/// The estimates.
 #[derive(Clone, Debug)]
 pub struct SpaceAnswers {
     /// One for the whole record, or one a window.
@@ -49,29 +49,29 @@ pub struct SpaceAnswers {
 }
 
 impl SpaceAnswers {
-    /// Whether some window is explained, and none has readings that no body explains. A window that does not tell all that is sought is a part
-    /// of the answer.
+    /// Whether some window is explained, and none has measurements that no body explains. A window from which the state is not observable is a valid
+    /// part of the answer.
     pub fn as_expected(&self) -> bool {
         let mut verdicts = self.updates.iter().map(|update| update.verdict);
         let wrong = |verdict| matches!(verdict, SpaceVerdict::DoesNotFit | SpaceVerdict::Lost);
         !verdicts.clone().any(wrong) && verdicts.any(|verdict| verdict == SpaceVerdict::Fits)
     }
 
-    /// Keeps no time on the wall.
+    /// Replaces each time by NaN.
     pub fn forget_times(&mut self) {
         self.updates.iter_mut().for_each(|update| update.seconds = f64::NAN);
     }
 }
 
 impl SpaceExperiment {
-    /// Simulates a scene, or takes its readings from a file: `data`, or else the one that the scene names.
+    /// Simulates a scene, or takes its measurements from a file: `data`, or else the one that the scene names.
     ///
     /// # Errors
     /// What is wrong with the body, the palms or the file.
     pub fn new(scene: SpaceScene, data: Option<&Path>) -> Result<SpaceExperiment, ReadError> {
         if let Some(file) = data.or(scene.record.as_deref()) {
-            let readings = SpaceMeasurements::recorded(&scene, file)?;
-            return Ok(SpaceExperiment { scene, truth: None, readings });
+            let measurements = SpaceMeasurements::recorded(&scene, file)?;
+            return Ok(SpaceExperiment { scene, truth: None, measurements });
         }
         let truth = simulated(&scene)?;
         let moments = &truth.trajectory.moments;
@@ -82,24 +82,24 @@ impl SpaceExperiment {
             let help = "start in balance (balanced = true), turn body and palms slower, or sample faster";
             return Err(scene.error_at("body", message, help));
         }
-        let readings = SpaceMeasurements::of(moments, &scene.sensor, scene.seed);
-        Ok(SpaceExperiment { scene, truth: Some(truth), readings })
+        let measurements = SpaceMeasurements::of(moments, &scene.sensor, scene.seed);
+        Ok(SpaceExperiment { scene, truth: Some(truth), measurements })
     }
 
-    /// The readings with where the palms hang.
+    /// The measurements with the places of the palms.
     pub fn solid(&self) -> SolidMeasurements {
-        self.readings.solid(&self.scene.palms, self.scene.gravity, &self.scene.sensor)
+        self.measurements.solid(&self.scene.palms, self.scene.gravity, &self.scene.sensor)
     }
 
     /// The windows, each from the last sample of the one before.
     fn windows(&self) -> Vec<Range<usize>> {
-        let rows = self.readings.times.len();
+        let rows = self.measurements.times.len();
         let length = self.scene.observer.window.unwrap_or(rows).clamp(FEWEST, rows);
         let mut windows = Vec::new();
         let mut from = 0;
         loop {
             let to = from + length;
-            // what is left would be too short for one of its own
+            // the remaining samples would be too few for a window
             if to - 1 + FEWEST > rows {
                 windows.push(from..rows);
                 return windows;
@@ -114,7 +114,7 @@ impl SpaceExperiment {
         self.windows().len()
     }
 
-    /// What the readings tell; `done` is told of each window.
+    /// The estimates from the measurements; `done` is called after each window.
     pub fn run(&self, interrupt: &dyn Fn() -> bool, done: &dyn Fn()) -> SpaceAnswers {
         let all = self.solid();
         let mut updates = Vec::new();
@@ -130,10 +130,10 @@ impl SpaceExperiment {
             };
             let found = part.explained(interrupt);
             let verdict = match &found {
-                None if part.is_still() => SpaceVerdict::Blind,
+                None if part.is_still() => SpaceVerdict::Unobservable,
                 None => SpaceVerdict::Lost,
                 Some((state, _)) if !state.fits() => SpaceVerdict::DoesNotFit,
-                Some((state, _)) if state.is_blind() => SpaceVerdict::Blind,
+                Some((state, _)) if state.is_unobservable() => SpaceVerdict::Unobservable,
                 Some((state, _)) if state.rival.is_some() => SpaceVerdict::Ambiguous,
                 Some(_) => SpaceVerdict::Fits,
             };
@@ -150,13 +150,13 @@ impl SpaceExperiment {
         SpaceAnswers { updates, shape }
     }
 
-    /// What is true at the first sample of a window, in the order of [`SolidState::entries`].
+    /// The true state at the first sample of a window, in the order of [`SolidState::entries`].
     pub fn true_entries(&self, update: &SpaceUpdate) -> Option<[f64; 16]> {
         let truth = self.truth.as_ref()?;
         Some(true_entries(&truth.scene, &truth.trajectory.moments[update.rows.start]))
     }
 
-    /// How far poses are from the truth; nothing where it is not known.
+    /// The errors of poses; nothing where the truth is not known.
     pub fn errors(&self, update: &SpaceUpdate) -> Vec<PoseError> {
         let Some(truth) = &self.truth else { return Vec::new() };
         let moments = &truth.trajectory.moments[update.rows.clone()];
@@ -176,7 +176,7 @@ impl SpaceExperiment {
         update.poses.iter().zip(moments).map(error).collect()
     }
 
-    /// The true support radius at a normal in the frame of the shape that is recovered, which is the world's at the first sample; and the point there.
+    /// The true support radius at a normal in the frame of the estimated shape, which is the world's at the first sample; and the point there.
     pub fn true_support(&self, normal: &Vector3<f64>) -> Option<(f64, Vector3<f64>)> {
         let truth = self.truth.as_ref()?;
         let turn = truth.trajectory.moments.first()?.orientation.matrix();
@@ -185,7 +185,7 @@ impl SpaceExperiment {
     }
 }
 
-/// The angle of a rotation, without what rounding makes of a cosine near one.
+/// The angle of a rotation, without the rounding error of a cosine near one.
 fn angle(turn: &Matrix3<f64>) -> f64 {
     let skew = (turn - turn.transpose()) / 2.0;
     Vector3::new(skew[(2, 1)], skew[(0, 2)], skew[(1, 0)]).norm().atan2((turn.trace() - 1.0) / 2.0)

@@ -1,7 +1,7 @@
 //! Scenes in space: `motion = "spatial"`.
 
 use super::super::scene::place::Places;
-use super::readings::SpaceSensor;
+use super::measurements::SpaceSensor;
 use palmistry_bodies::mechanics::spatial::{SolidForm, SpatialDrive, SpatialPalm};
 use palmistry_lang::{Code, Problem, ReadError};
 use palmistry_observe::FaultRules;
@@ -30,11 +30,11 @@ pub struct SpaceBody {
 /// `[observer]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpaceObserver {
-    /// `window`: so many samples are explained at a time; all of them unless given.
+    /// `window`: the number of samples that are explained at a time; all of them unless given.
     pub window: Option<usize>,
-    /// `degree`: the last one of the shape's harmonics; the readings choose unless given.
+    /// `degree`: the highest degree of the shape's harmonics; the measurements choose unless given.
     pub degree: Option<usize>,
-    /// `least_radius` and `greatest_radius`: no radius of curvature of the body is below and above these, in m, as one knows.
+    /// `least_radius` and `greatest_radius`: known bounds of the body's radii of curvature, in m.
     pub radii: [Option<f64>; 2],
 }
 
@@ -43,25 +43,25 @@ pub struct SpaceObserver {
 pub struct SpaceScene {
     /// `title`.
     pub title: String,
-    /// `seed`: where noise begins.
+    /// `seed`: the seed of the noise.
     pub seed: u64,
-    /// The times of the samples in s; none where readings are recorded.
+    /// The times of the samples in s; none where measurements are recorded.
     pub times: Vec<f64>,
     /// `gravity`: any vector, in m/s^2.
     pub gravity: [f64; 3],
-    /// `[body]`; none where readings are recorded.
+    /// `[body]`; none where measurements are recorded.
     pub body: Option<SpaceBody>,
     /// `azimuth`, `hinge`, `inertia`, `curvature`, `touch_point` of `[palms]`.
     pub palms: [SpatialPalm; 3],
-    /// `prescribed` or `torques` of `[palms]`; none where readings are recorded.
+    /// `prescribed` or `torques` of `[palms]`; none where measurements are recorded.
     pub drive: Option<SpatialDrive>,
     /// `[sensor]`.
     pub sensor: SpaceSensor,
     /// `[data] record`, relative to where the program runs.
     pub record: Option<PathBuf>,
-    /// What the recording calls its columns.
+    /// The recording's names of its columns.
     pub columns: BTreeMap<String, String>,
-    /// `[data] on_fault` and `spike`: how faulty rows of a recording are found, and what is done about them.
+    /// `[data] on_fault` and `spike`: how faulty rows of a recording are detected and treated.
     pub faults: FaultRules,
     /// `[observer]`.
     pub observer: SpaceObserver,

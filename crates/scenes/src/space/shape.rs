@@ -1,4 +1,4 @@
-//! How a scene in space writes a body's shape.
+//! A body's shape as a scene in space writes it.
 
 use super::super::scene::place::Places;
 use palmistry_bodies::mechanics::spatial::{Harmonic, SolidForm};
@@ -43,7 +43,7 @@ struct PartKeys {
 }
 
 impl ShapeKeys {
-    /// The form that stands at a place of a scene.
+    /// The form at a place of a scene.
     pub fn form(self, places: &Places<'_>, at: &str, depth: usize) -> Result<SolidForm, Problem> {
         let wrong = |key: &str, message: String, help: String| {
             let place = if key.is_empty() { at.to_owned() } else { format!("{at}.{key}") };

@@ -1,4 +1,4 @@
-//! Where the body was touched in one frame, and the shape and its bounds that this tells.
+//! The contacts of the body in one frame, and the shape and its bounds that follow from them.
 
 use super::answers::{SpaceUpdate, SpaceVerdict};
 use super::scene::SpaceObserver;
@@ -8,27 +8,27 @@ use palmistry_bodies::shape::sphere::{
     balls_and_half_spaces, contact_hull, fit_solid, half_space_intersection, rounded_hull,
 };
 
-/// Where nothing is said of errors, a contact counts as exact to this part of the body at best.
+/// Where no errors are stated, a contact counts as exact to this fraction of the body at best.
 const EXACT: f64 = 1e-12;
 
-/// What was touched, and what that tells of the shape. The frame is the world's at the first sample, about the centre of mass.
+/// The contacts, and the shape that follows from them. The frame is the world's at the first sample, about the centre of mass.
 #[derive(Clone, Debug)]
 pub struct SpaceShape {
     /// The contacts.
     pub touches: Vec<SurfaceTouch>,
-    /// The standard deviation that a contact counts with, in m.
+    /// The standard deviation of a contact, in m.
     pub deviation: f64,
     /// The support function.
     pub estimate: Option<SolidEstimate>,
-    /// What the body contains.
+    /// A region that the body contains.
     pub hull: Result<BoundedRegion, TouchError>,
-    /// What it lies in.
+    /// A region that contains the body.
     pub outer: Result<OuterBound, TouchError>,
-    /// What it contains where no radius of curvature is below the one that the scene says.
+    /// A region that it contains where no radius of curvature is below the one given in the scene.
     pub rounded: Option<Result<BoundedRegion, TouchError>>,
-    /// What it lies in where none is above the one that the scene says.
+    /// A region that contains it where none is above the one given in the scene.
     pub balls: Option<Result<BoundedRegion, TouchError>>,
-    /// What it lies in where palms are hollow: each contact with one is inside of its ball, which contains the body.
+    /// A region that contains it where palms are hollow: the body lies in the ball of each contact with one.
     pub hollow: Option<Result<BoundedRegion, TouchError>>,
 }
 
@@ -83,7 +83,7 @@ impl SpaceShape {
         }
     }
 
-    /// The largest error of the recovered support radius in m, where `truth` is the true one at a normal: where the body was touched, and over all directions.
+    /// The largest error of the estimated support radius in m, where `truth` is the true one at a normal: where the body was touched, and over all directions.
     pub fn errors(&self, truth: &dyn Fn(&Vector3<f64>) -> f64) -> Option<[f64; 2]> {
         let support = &self.estimate.as_ref()?.support;
         let off = |normal: &Vector3<f64>| (support.support(normal) - truth(normal)).abs();
@@ -93,7 +93,7 @@ impl SpaceShape {
     }
 }
 
-/// Directions by rings from one pole to the other, so many rings and twice as many directions in each.
+/// Directions by rings from one pole to the other, with twice as many directions in each as there are rings.
 pub fn directions(rings: usize) -> Vec<Vec<Vector3<f64>>> {
     use std::f64::consts::{PI, TAU};
     let ring = |i: usize| {

@@ -1,6 +1,6 @@
-//! Rows on their way: judged, and kept until their window is observed.
+//! Arriving rows: checked for faults, and kept until their window is observed.
 
-use super::told::{StreamEnd, StreamPiece};
+use super::events::{StreamEnd, StreamPiece};
 use crate::groundwork::{Groundwork, Steady};
 use crate::run::{Experiment, unusable};
 use crate::scene::{Scene, SceneError};
@@ -8,27 +8,27 @@ use palmistry_observe::{Fault, OnFault, ReadRecord, Record, RecordError, RowStre
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// So many rows beside a window carry its curves.
+/// The number of rows beside a window that its curves need.
 pub const MARGIN: usize = 4;
 
-/// Rows that are judged, and not yet given away.
+/// Rows that are checked, and not yet given away.
 #[derive(Default)]
 pub struct Buffer {
     pub times: Vec<f64>,
     pub columns: Vec<Vec<f64>>,
-    /// The place of the first row of the next window; those before carry its curves.
+    /// The index of the first row of the next window; the curves of the window need those before.
     pub first: usize,
-    /// So many rows before it are read again with it.
+    /// This many rows before it are used again with it.
     pub again: usize,
 }
 
 impl Buffer {
-    /// How many are there from the next window on.
+    /// The number of rows from the next window on.
     pub fn waiting(&self) -> usize {
         self.times.len() - self.first
     }
 
-    /// Lets go of what carries no curve any more.
+    /// Drops rows that no curve needs any more.
     pub fn drop_before(&mut self) {
         let gone = self.first.saturating_sub(MARGIN + self.again);
         self.times.drain(..gone);
@@ -39,7 +39,7 @@ impl Buffer {
 
 pub const INTERRUPTED: &str = "interrupted";
 
-/// Rows on their way into the buffer.
+/// Rows that arrive and go into the buffer.
 pub struct Arriving<'a> {
     pub rows: RowStream,
     pub next: &'a mut dyn FnMut() -> StreamPiece,
@@ -52,7 +52,7 @@ pub struct Arriving<'a> {
 }
 
 impl Arriving<'_> {
-    /// Waits until a window is there with the rows after it that carry its curves, or there is no more.
+    /// Waits until a window is there with the rows after it that its curves need, or there is no more.
     pub fn fill(&mut self, scene: &Scene, window: usize) -> Result<(), SceneError> {
         let refuse = |error: RecordError| unusable(scene, &error);
         loop {
@@ -117,7 +117,7 @@ impl Arriving<'_> {
         self.faults.extend(faults);
     }
 
-    /// The experiment with the readings of the next window.
+    /// The experiment with the measurements of the next window.
     pub fn experiment(
         &self,
         ground: Groundwork,
@@ -132,7 +132,7 @@ impl Arriving<'_> {
         let record = record.map_err(|error| unusable(&ground.scene, &error))?;
         let began = self.rows.began().map(str::to_owned);
         let reading = ReadRecord { began, ..ReadRecord::whole(record) };
-        Experiment::with_readings(ground, reading, None, steady)
+        Experiment::with_measurements(ground, reading, None, steady)
     }
 
     pub fn ended(mut self) -> StreamEnd {

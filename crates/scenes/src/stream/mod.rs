@@ -1,15 +1,15 @@
-//! Observers on readings that arrive: an answer a window, and no more kept than a window and what was learned.
+//! Observers on measurements that arrive: an answer a window, keeping no more than a window and the estimates so far.
 //!
-//! A window is observed as soon as the rows are there that carry its curves and by which its rows are judged; it begins with what was learned by its
+//! A window is observed as soon as the rows are there that its curves and the fault checks of its rows need; it starts from the estimate at its
 //! first sample, which it shares with the window before. A column that does not change in the first window is taken for a constant, as of a file; where it
-//! changes later the model is made anew with it, and what is believed is all that stays. The probability
+//! changes later the model is built again with it, and only the estimate is kept. The probability
 //! of a false alarm of the k-th window is the whole run's times `6/(pi k)^2`, so that all of an endless run have no more than that together.
 
 mod arriving;
+mod events;
 mod observing;
-mod told;
 
-pub use told::{StreamAnswer, StreamEnd, StreamPiece, StreamTally, WindowReport};
+pub use events::{StreamAnswer, StreamEnd, StreamPiece, StreamTally, WindowReport};
 
 use super::channels::known_sensors;
 use super::groundwork::{Groundwork, Steady};
@@ -21,11 +21,11 @@ use palmistry_observe::{RecordError, RowStream, STREAM};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// Observes what arrives, window after window. `next` hands over what has arrived, `tell` is told of each window and says whether anybody still
+/// Observes what arrives, window after window. `next` returns what has arrived, `tell` is called with each window and returns whether anybody still
 /// listens.
 ///
 /// # Errors
-/// What is wrong with the scene, the header or the first window, with the place in the scene. What is wrong later is told in [`StreamEnd`].
+/// What is wrong with the scene, the header or the first window, with the place in the scene. Later faults are in [`StreamEnd`].
 pub fn observe_stream(
     scene: Scene,
     interrupt: &AtomicBool,
@@ -60,7 +60,7 @@ pub fn observe_stream(
     if arriving.buffer.times.len() < 2 {
         let path = Path::new(STREAM).to_owned();
         return match (arriving.end.fault.is_some(), arriving.end.cut_off.is_some()) {
-            // nothing was there to be observed
+            // there was nothing to observe
             (false, false) if arriving.rows.arrived() == 1 => {
                 let help = "a window has two rows or more";
                 Err(scene.error_at(

@@ -1,7 +1,7 @@
-//! Observers with what they have learned, window after window.
+//! Observers with the estimates of earlier windows, window after window.
 
 use super::arriving::{Arriving, Buffer, INTERRUPTED, MARGIN};
-use super::told::{StreamAnswer, StreamTally, WindowReport};
+use super::events::{StreamAnswer, StreamTally, WindowReport};
 use crate::channels::known_sensors;
 use crate::run::Experiment;
 use crate::scene::{Method, SceneError};
@@ -11,14 +11,14 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-/// What is kept from window to window.
+/// The state that is kept from window to window.
 pub struct SoFar {
     pub windows: u64,
     pub learned: Vec<Option<Arc<Learned>>>,
     pub tallies: Vec<StreamTally>,
-    /// From when times are counted.
+    /// The origin from which times are counted.
     pub origin: f64,
-    /// What is to be said with the next window.
+    /// A remark for the report on the next window.
     remark: Option<String>,
 }
 
@@ -44,7 +44,7 @@ impl SoFar {
         }
     }
 
-    /// The model is another one from here on.
+    /// The model changes from here on.
     pub fn forget_all_but_belief(&mut self, column: &str) {
         for learned in self.learned.iter_mut().flatten() {
             *learned = Arc::new(Learned::belief_alone(learned.belief.clone()));
@@ -55,17 +55,17 @@ impl SoFar {
     }
 }
 
-/// Observers with what they have learned.
+/// Observers with the estimates of earlier windows.
 pub struct Observing<'a> {
     experiment: &'a Experiment,
     task: &'a Task<'a>,
     names: Vec<String>,
-    /// What is taken off each column and by what it is divided, where that is known of its sensor.
+    /// The bias and the gain by which each column is corrected, where they are known of its sensor.
     sensors: Vec<(f64, f64)>,
     /// Columns that are taken for constants.
     steady: Vec<(usize, f64)>,
     so_far: SoFar,
-    /// Whether columns beside a window carry its curves.
+    /// Whether the rows beside a window contribute to its curves.
     has_margins: bool,
 }
 
@@ -90,7 +90,7 @@ impl<'a> Observing<'a> {
             steady: names.iter().enumerate().filter_map(steady).collect(),
             names,
             so_far,
-            // errors of columns are weighed for all of their samples: those beside a window are none of its own
+            // errors of columns are weighted for all of their samples: those beside a window do not belong to it
             has_margins: task.errors.is_empty(),
         }
     }

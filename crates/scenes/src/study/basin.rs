@@ -1,4 +1,4 @@
-//! From which first guesses the methods of a scene arrive.
+//! From which first guesses the methods of a scene converge to the truth.
 
 use super::super::run::{Experiment, error};
 use super::super::scene::{self, BasinStudy, SceneError};
@@ -7,42 +7,42 @@ use palmistry_observe::Task;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The first guesses from which one method arrives.
+/// The first guesses from which one method converges to the truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Basin {
     /// The observer.
     pub method: scene::Method,
-    /// The states that span the grid, and their values along each side.
+    /// The states that span the grid.
     pub names: [String; 2],
     /// The values of each along its side.
     pub values: [Vec<f64>; 2],
-    /// Whether it arrives, rows by the second state; none where it was interrupted before.
+    /// Whether it converges to the truth, rows by the second state; none where it was interrupted before.
     pub arrives: Vec<Option<bool>>,
 }
 
 impl Basin {
-    /// The part of the guesses that were tried from which it arrives.
+    /// The fraction of the tried guesses from which it converges to the truth.
     pub fn fraction(&self) -> f64 {
         let tried = self.arrives.iter().flatten().count();
         self.arrives.iter().flatten().filter(|arrives| **arrives).count() as f64 / tried.max(1) as f64
     }
 }
 
-/// An estimate has arrived that is within one percent of the truth.
+/// The relative error below which an estimate counts as the truth.
 pub const ARRIVED: f64 = 0.01;
 
 /// The first guesses of a study, one after the other: all of the first method, then those of the next.
 pub(super) struct BasinTrials<'a> {
     experiment: &'a Experiment,
     task: Task<'a>,
-    /// Of the states that span the grid: its place among what is sought, and its name.
+    /// Of the states that span the grid: its index among the estimated states, and its name.
     spanned: [(usize, String); 2],
     values: [Vec<f64>; 2],
 }
 
 impl<'a> BasinTrials<'a> {
     /// # Errors
-    /// As [`Experiment::task`], or where the study does not span two states that are sought.
+    /// As [`Experiment::task`], or where the study does not span two estimated states.
     pub fn new(
         experiment: &'a Experiment,
         study: &BasinStudy,
@@ -66,17 +66,17 @@ impl<'a> BasinTrials<'a> {
         Ok(BasinTrials { experiment, task, spanned, values })
     }
 
-    /// How many each method has.
+    /// The number of guesses of each method.
     fn of_each(&self) -> usize {
         self.values[0].len() * self.values[1].len()
     }
 
-    /// How many there are.
+    /// The number of trials.
     pub fn count(&self) -> usize {
         self.of_each() * self.experiment.scene.observer.methods.len()
     }
 
-    /// Whether a method arrives from one of them: of its place alone, whoever runs it.
+    /// Whether a method converges to the truth from one of them; the result depends on its place alone.
     pub fn trial(&self, place: usize) -> bool {
         let (method, place) = (place / self.of_each(), place % self.of_each());
         let Some(&method) = self.experiment.scene.observer.methods.get(method) else { return false };
@@ -86,7 +86,7 @@ impl<'a> BasinTrials<'a> {
         arrives(self.experiment, &task, method).unwrap_or(false)
     }
 
-    /// What all guesses, in their order, come to: one a method.
+    /// The basins from the results of all guesses, in their order: one a method.
     pub fn basins(&self, arrives: &[Option<bool>]) -> Vec<Basin> {
         let methods = self.experiment.scene.observer.methods.iter();
         let each = methods.zip(arrives.chunks(self.of_each()));
@@ -100,11 +100,11 @@ impl<'a> BasinTrials<'a> {
     }
 }
 
-/// From which first guesses of two states each method of the scene arrives: within [`ARRIVED`] of the truth, after their first
+/// From which first guesses of two states each method of the scene converges: within [`ARRIVED`] of the truth, after their first
 /// window for methods that work by windows and at the last sample for the others. `done` is called once a guess.
 ///
 /// # Errors
-/// As [`Experiment::task`], or where the study does not span two states that are sought.
+/// As [`Experiment::task`], or where the study does not span two estimated states.
 pub fn basins(
     experiment: &Experiment,
     study: &BasinStudy,

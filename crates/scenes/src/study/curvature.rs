@@ -1,4 +1,4 @@
-//! Whether palms of other forms tell more: the bound at the truth over the curvatures of both palms, in several motions of the body.
+//! Whether palms of other forms improve the estimate: the Cramér-Rao bound at the truth over the curvatures of both palms, in several motions of the body.
 
 use super::super::run::Experiment;
 use super::super::scene::{CurvatureStudy, Guess, Method, Scene, SceneError, Study};
@@ -11,74 +11,74 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// The states whose bounds are compared: the support radii at both contacts.
 const COMPARED: [&str; 2] = ["r1", "r2"];
 
-/// Palms of less curvature count as flat ones, in 1/m.
+/// Palms of less curvature count as flat, in 1/m.
 const FLATTEST: f64 = 1e-6;
 
-/// How the body of a scene begins, and what flat palms would tell of it.
+/// The initial state of a scene's body, and its bound between flat palms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudiedMotion {
-    /// `phi0` and `omega0` at the start, in rad and rad/s.
+    /// `phi0` at the start, in rad.
     pub orientation: f64,
-    /// In rad/s.
+    /// `omega0` at the start, in rad/s.
     pub rate: f64,
-    /// What flat palms tell.
-    pub flat: Told,
+    /// The bound between flat palms.
+    pub flat: WindowBound,
 }
 
-/// What the readings of a window can tell of both support radii.
+/// The Cramér-Rao bound of both support radii in a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Told {
+pub enum WindowBound {
     /// The palms do not hold the body for that long.
     NotHeld,
-    /// The bound exceeds what the scene calls blind.
-    Blind,
-    /// The larger bound of Cramér and Rao of both, in m.
+    /// The bound exceeds the scene's `unobservable_above`.
+    Unobservable,
+    /// The larger Cramér-Rao bound of both, in m.
     Bound(f64),
 }
 
-impl Told {
-    /// In m, infinite where blind; nothing where the body is not held.
+impl WindowBound {
+    /// In m, infinite where unobservable; nothing where the body is not held.
     pub fn bound(self) -> Option<f64> {
         match self {
-            Told::NotHeld => None,
-            Told::Blind => Some(f64::INFINITY),
-            Told::Bound(bound) => Some(bound),
+            WindowBound::NotHeld => None,
+            WindowBound::Unobservable => Some(f64::INFINITY),
+            WindowBound::Bound(bound) => Some(bound),
         }
     }
 }
 
-/// The bounds over those between flat palms, of the motions in which flat palms see.
+/// The ratios of bounds to those between flat palms, over the motions that flat palms observe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvatureRatio {
-    /// The middle one (the upper of two), the least and the greatest; infinite where blind.
+    /// The middle one (the upper of two); infinite where unobservable.
     pub median: f64,
-    /// See [`CurvatureRatio::median`].
+    /// The least.
     pub least: f64,
-    /// See [`CurvatureRatio::median`].
+    /// The greatest.
     pub greatest: f64,
-    /// Of how many motions: flat palms see, and these hold the body.
+    /// The number of motions that flat palms observe and these hold.
     pub motions: usize,
 }
 
-/// The bound over the curvatures of both palms.
+/// The Cramér-Rao bound over the curvatures of both palms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvatureMap {
-    /// The standard deviation of the contacts' readings, in m.
+    /// The standard deviation of the contacts' measurements, in m.
     pub noise: f64,
     /// The curvatures along each side, in 1/m: above zero of hollow palms.
     pub curvatures: Vec<f64>,
     /// The motions.
     pub motions: Vec<StudiedMotion>,
-    /// For each pair of curvatures, rows by that of palm 2, what each motion tells; none where it was interrupted before.
-    pub told: Vec<Vec<Option<Told>>>,
+    /// For each pair of curvatures, rows by that of palm 2, the bound of each motion; none where it was interrupted before.
+    pub told: Vec<Vec<Option<WindowBound>>>,
 }
 
 impl CurvatureMap {
-    /// How much more or less a pair of curvatures tells than flat palms; nothing where there is no motion to compare.
+    /// The ratios of the bounds of a pair of curvatures to those of flat palms; nothing where there is no motion to compare.
     pub fn ratio(&self, cell: usize) -> Option<CurvatureRatio> {
         let told = self.told.get(cell)?;
-        let ratio = |(told, motion): (&Option<Told>, &StudiedMotion)| match motion.flat {
-            Told::Bound(flat) => Some((*told)?.bound()? / flat),
+        let ratio = |(told, motion): (&Option<WindowBound>, &StudiedMotion)| match motion.flat {
+            WindowBound::Bound(flat) => Some((*told)?.bound()? / flat),
             _ => None,
         };
         let mut ratios: Vec<f64> = told.iter().zip(&self.motions).filter_map(ratio).collect();
@@ -99,7 +99,7 @@ pub(super) struct CurvatureTrials<'a> {
 
 impl<'a> CurvatureTrials<'a> {
     /// # Errors
-    /// Where no body is held, or its support radii are not sought.
+    /// Where no body is held, or its support radii are not estimated.
     pub fn new(
         experiment: &'a Experiment,
         study: &'a CurvatureStudy,
@@ -132,13 +132,13 @@ impl<'a> CurvatureTrials<'a> {
         Ok(CurvatureTrials { experiment, study, curvatures: (0..=last).map(at).collect(), motions })
     }
 
-    /// How many there are.
+    /// The number of trials.
     pub fn count(&self) -> usize {
         self.motions.len() * (1 + self.curvatures.len().pow(2))
     }
 
-    /// What one of them tells: of its place alone, whoever asks.
-    pub fn trial(&self, place: usize) -> Told {
+    /// The bound of one of them, which depends on its place alone.
+    pub fn trial(&self, place: usize) -> WindowBound {
         let (cell, motion) = (place / self.motions.len(), self.motions[place % self.motions.len()]);
         let curvatures = match cell.checked_sub(1) {
             None => [0.0; 2],
@@ -151,35 +151,40 @@ impl<'a> CurvatureTrials<'a> {
             0.0 => Palm::Flat,
             _ => Palm::Circular { radius: 1.0 / curvature },
         });
-        told(&self.experiment.scene, forms, motion, self.study.noise).unwrap_or(Told::NotHeld)
+        told(&self.experiment.scene, forms, motion, self.study.noise).unwrap_or(WindowBound::NotHeld)
     }
 
-    /// What all of them, in their order, come to.
-    pub fn map(&self, told: &[Option<Told>]) -> CurvatureMap {
+    /// The map from all bounds, in their order.
+    pub fn map(&self, told: &[Option<WindowBound>]) -> CurvatureMap {
         let (flat, cells) = told.split_at(self.motions.len().min(told.len()));
         let motions = self.motions.iter().zip(flat).map(|([orientation, rate], flat)| StudiedMotion {
             orientation: *orientation,
             rate: *rate,
-            flat: flat.unwrap_or(Told::NotHeld),
+            flat: flat.unwrap_or(WindowBound::NotHeld),
         });
         CurvatureMap {
             noise: self.study.noise,
             curvatures: self.curvatures.clone(),
             motions: motions.collect(),
-            told: cells.chunks(self.motions.len()).map(<[Option<Told>]>::to_vec).collect(),
+            told: cells.chunks(self.motions.len()).map(<[Option<WindowBound>]>::to_vec).collect(),
         }
     }
 }
 
-/// What palms of these forms tell in the first window of a scene whose body begins so; nothing where they do not hold it so long.
-fn told(scene: &Scene, forms: [Palm<f64>; 2], [orientation, rate]: [f64; 2], noise: f64) -> Option<Told> {
+/// The bound of palms of these forms in the first window of a scene with this initial state; nothing where they do not hold the body so long.
+fn told(
+    scene: &Scene,
+    forms: [Palm<f64>; 2],
+    [orientation, rate]: [f64; 2],
+    noise: f64,
+) -> Option<WindowBound> {
     let mut scene = scene.clone();
     scene.palm_forms = forms;
     (scene.study, scene.observer.guess) = (Study::default(), Guess::Off(0.0));
     scene.observer.methods = vec![Method::TrustRegion];
     let simulated = scene.simulated.as_mut()?;
     (simulated.body.orientation, simulated.body.rate) = (orientation, rate);
-    // no longer than the window that is asked for
+    // no longer than the required window
     let samples = (scene.observer.window.max(2) + 1).min(simulated.samples);
     simulated.duration *= (samples - 1) as f64 / (simulated.samples - 1).max(1) as f64;
     simulated.samples = samples;
@@ -197,14 +202,14 @@ fn told(scene: &Scene, forms: [Palm<f64>; 2], [orientation, rate]: [f64; 2], noi
     let names = experiment.names();
     let compared = names.iter().zip(&bounds).filter(|(name, _)| COMPARED.contains(name));
     let largest = compared.map(|(_, bound)| *bound).fold(0.0, f64::max);
-    let sees = part <= observer.blind && largest.is_finite();
-    Some(if sees { Told::Bound(largest) } else { Told::Blind })
+    let sees = part <= observer.unobservable_above && largest.is_finite();
+    Some(if sees { WindowBound::Bound(largest) } else { WindowBound::Unobservable })
 }
 
 /// The map of a study. Bounds are found side by side; the result is the same on any number of threads. `done` is called once a bound.
 ///
 /// # Errors
-/// Where no body is held, or its support radii are not sought.
+/// Where no body is held, or its support radii are not estimated.
 pub fn curvature_map(
     experiment: &Experiment,
     study: &CurvatureStudy,
@@ -212,7 +217,7 @@ pub fn curvature_map(
     done: &(dyn Fn() + Sync),
 ) -> Result<CurvatureMap, SceneError> {
     let all = CurvatureTrials::new(experiment, study)?;
-    let one = |place: usize| -> Option<Told> {
+    let one = |place: usize| -> Option<WindowBound> {
         if interrupt.load(Ordering::Relaxed) {
             return None;
         }
@@ -220,6 +225,6 @@ pub fn curvature_map(
         done();
         Some(told)
     };
-    let told: Vec<Option<Told>> = (0..all.count()).into_par_iter().map(one).collect();
+    let told: Vec<Option<WindowBound>> = (0..all.count()).into_par_iter().map(one).collect();
     Ok(all.map(&told))
 }

@@ -1,6 +1,6 @@
-//! An experiment many times over: with other errors of the readings, from other first guesses, and between other palms.
+//! Repetitions of an experiment: with other errors of the measurements, from other first guesses, and between other palms.
 //!
-//! Each trial is one of its place alone, so that a study may be cut into stretches of trials ([`StudyPart`]), and comes to the same.
+//! Each trial depends on its place alone, so that a study may be cut into stretches of trials ([`StudyPart`]) with the same result.
 
 mod basin;
 mod curvature;
@@ -11,6 +11,6 @@ mod part_text;
 mod tests;
 
 pub use basin::{ARRIVED, Basin, basins};
-pub use curvature::{CurvatureMap, CurvatureRatio, StudiedMotion, Told, curvature_map};
+pub use curvature::{CurvatureMap, CurvatureRatio, StudiedMotion, WindowBound, curvature_map};
 pub use noise::{NoiseLevel, noise_study};
 pub use part::{Studied, Studies, StudyMergeError, StudyPart};

@@ -12,21 +12,21 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// The error over many seeds at one level of noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseLevel {
-    /// The standard deviation of the readings, in their unit: in m of contacts.
+    /// The standard deviation of the measurements, in their unit: in m for contacts.
     pub noise: f64,
-    /// Estimates that converged, of how many seeds.
+    /// The number of estimates that converged.
     pub converged: usize,
-    /// Those of them of which it was said that they do not fit: false alarms.
+    /// The number of those that failed the chi-square test: false alarms.
     pub unfit: usize,
-    /// How many draws of noise.
+    /// The number of draws of noise.
     pub seeds: usize,
-    /// The root of the mean square error of what is sought at the first sample, over the seeds that converged.
+    /// The root mean square error of the estimated states at the first sample, over the seeds that converged.
     pub errors: Vec<f64>,
-    /// The bound of Cramér and Rao there: at the truth, and for outputs that are states at what is read first.
+    /// The Cramér-Rao bound there: at the truth, and for outputs that are states at their first measurement.
     pub bounds: Vec<f64>,
 }
 
-/// What came of one draw of noise.
+/// The result of one draw of noise.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Trial {
     /// There was no estimate, or it did not converge.
@@ -38,7 +38,7 @@ pub(super) enum Trial {
 }
 
 impl Trial {
-    /// What it converged to.
+    /// The estimate, if it converged.
     pub fn estimate(&self) -> Option<&Vec<f64>> {
         match self {
             Trial::Converged { estimate, .. } => Some(estimate),
@@ -66,17 +66,20 @@ impl<'a> NoiseTrials<'a> {
         interrupt: &'a AtomicBool,
     ) -> Result<NoiseTrials<'a>, SceneError> {
         let task = experiment.task(interrupt)?;
-        let observer =
-            MovingWindow { steps: 50, blind: f64::INFINITY, ..experiment.window(WindowSearch::TrustRegion) };
+        let observer = MovingWindow {
+            steps: 50,
+            unobservable_above: f64::INFINITY,
+            ..experiment.window(WindowSearch::TrustRegion)
+        };
         Ok(NoiseTrials { experiment, simulation, study, task, observer })
     }
 
-    /// How many there are.
+    /// The number of trials.
     pub fn count(&self) -> usize {
         self.study.levels.len() * self.study.seeds
     }
 
-    /// What comes of one of them: of its place alone, whoever runs it.
+    /// The result of one of them, which depends on its place alone.
     pub fn trial(&self, place: usize) -> Trial {
         let estimate = || -> Option<Trial> {
             let noise = *self.study.levels.get(place / self.study.seeds.max(1))?;
@@ -93,7 +96,7 @@ impl<'a> NoiseTrials<'a> {
         estimate().unwrap_or(Trial::Failed)
     }
 
-    /// What the draws of a level, in their order, come to: nothing where there is no truth.
+    /// The results of a level's draws, in their order: nothing where there is no truth.
     pub fn level(&self, level: usize, trials: &[Trial]) -> Option<NoiseLevel> {
         let noise = *self.study.levels.get(level)?;
         let truth = self.experiment.truth_at(*self.task.signals.times().first()?)?;
@@ -115,7 +118,7 @@ impl<'a> NoiseTrials<'a> {
         })
     }
 
-    /// What all draws, in their order, come to: a row a level.
+    /// The results of all draws, in their order: a row a level.
     pub fn levels(&self, trials: &[Trial]) -> Vec<NoiseLevel> {
         let each = trials.chunks(self.study.seeds.max(1)).enumerate();
         each.map_while(|(level, trials)| self.level(level, trials)).collect()
@@ -149,7 +152,7 @@ pub fn noise_study(
             Some(trial)
         };
         let places = level * study.seeds..(level + 1) * study.seeds;
-        // those that were not begun are none
+        // trials that were not started are left out
         let trials: Vec<Option<Trial>> = places.into_par_iter().map(one).collect();
         let trials: Vec<Trial> = trials.into_iter().flatten().collect();
         let Some(found) = all.level(level, &trials) else { break };
@@ -166,7 +169,7 @@ fn noisy(experiment: &Experiment, simulation: &dyn KnownMotion, noise: f64, seed
     corrected(Signals::of_record(&record).ok()?, &experiment.scene.observer.known).ok()
 }
 
-/// A task whose outputs are read with errors of one level.
+/// A task whose outputs are measured with errors of one level.
 pub(super) fn at_level<'a>(experiment: &Experiment, task: &Task<'a>, noise: f64) -> Task<'a> {
     let mut task = task.clone();
     let rounding = experiment.scene.sensor.resolution;
@@ -190,7 +193,7 @@ pub(super) fn first_window(task: &Task<'_>, observer: &MovingWindow) -> std::ops
     0..(observer.window.max(2) + 1).min(task.signals.times().len())
 }
 
-/// The bound of Cramér and Rao for what is sought at the first sample, at the truth; outputs that are states begin at what is read, which is off where a pole
+/// The Cramér-Rao bound of the estimated states at the first sample, at the truth; outputs that are states start at their measurement, which is wrong where a pole
 /// is near.
 fn bounds(task: &Task<'_>, observer: &MovingWindow, truth: &[f64]) -> Vec<f64> {
     observer.bounds(task, truth, &first_window(task, observer), &task.clamped)

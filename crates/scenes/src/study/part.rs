@@ -1,11 +1,11 @@
-//! Stretches of a scene's studies: what came of some of their trials, and what all of them add up to.
+//! Stretches of a scene's studies: the results of some of their trials, and how they are merged.
 //!
 //! The trials of all studies of a scene stand one after the other: draws of noise, then first guesses, then bounds between other palms.
 
 use super::super::run::Experiment;
 use super::super::scene::SceneError;
 use super::basin::{Basin, BasinTrials};
-use super::curvature::{CurvatureMap, CurvatureTrials, Told};
+use super::curvature::{CurvatureMap, CurvatureTrials, WindowBound};
 use super::noise::{NoiseLevel, NoiseTrials, Trial};
 use palmistry_io::parts::{NoCover, in_order};
 use palmistry_rank::sweep::Fingerprint;
@@ -13,30 +13,30 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What came of some trials of a scene's studies.
+/// The results of some trials of a scene's studies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyPart {
-    /// What was asked, and what was read, as numbers.
+    /// Fingerprints of the question and of the measurements.
     pub(super) asked: u64,
-    pub(super) readings: u64,
-    /// How many trials all studies have.
+    pub(super) measurements: u64,
+    /// The number of trials of all studies.
     pub(super) trials: u64,
     /// The first of those that were made, and the one after the last.
     pub(super) first: u64,
     pub(super) last: u64,
     pub(super) noise: Vec<Trial>,
     pub(super) arrives: Vec<bool>,
-    pub(super) told: Vec<Told>,
+    pub(super) told: Vec<WindowBound>,
 }
 
-/// What all trials of a scene's studies come to; of those that it does not have nothing.
+/// The results of all trials of a scene's studies; empty for studies that it does not have.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Studied {
     /// The error over noise.
     pub noise: Vec<NoiseLevel>,
-    /// From where each method arrives.
+    /// From where each method converges to the truth.
     pub basins: Vec<Basin>,
-    /// What palms of other curvatures tell.
+    /// The bounds between palms of other curvatures.
     pub curvature: Option<CurvatureMap>,
 }
 
@@ -48,18 +48,18 @@ impl Studied {
 }
 
 impl StudyPart {
-    /// The places of its trials.
+    /// The indices of its trials.
     pub fn range(&self) -> Range<u64> {
         self.first..self.last
     }
 
-    /// What was asked, as [`Studies::fingerprint`] tells it.
+    /// The fingerprint of the question, as [`Studies::fingerprint`] gives it.
     pub fn fingerprint(&self) -> u64 {
         self.asked
     }
 }
 
-/// Why parts do not make a whole. Parts are called by the names that they were given.
+/// Why parts cannot be merged. Parts are called by the names that they were given.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // names and messages say it
 pub enum StudyMergeError {
@@ -90,21 +90,21 @@ impl From<NoCover> for StudyMergeError {
     }
 }
 
-/// The studies of a scene, made ready: to make trials of any stretch, and to say what all of them come to.
+/// The studies of a scene, ready to make trials of any stretch, and to merge the results of all.
 pub struct Studies<'a> {
     experiment: &'a Experiment,
     noise: Option<NoiseTrials<'a>>,
     basins: Option<BasinTrials<'a>>,
     curvature: Option<CurvatureTrials<'a>>,
     asked: u64,
-    readings: u64,
+    measurements: u64,
 }
 
 impl<'a> Studies<'a> {
-    /// The studies that a scene has, of which there may be none. They need the truth: with readings from a file there is none.
+    /// The studies of a scene, possibly none. They need the truth: with measurements from a file there is none.
     ///
     /// # Errors
-    /// As [`Experiment::task`], or where a study asks for states that are not sought.
+    /// As [`Experiment::task`], or where a study asks for states that are not estimated.
     pub fn new(experiment: &'a Experiment, interrupt: &'a AtomicBool) -> Result<Studies<'a>, SceneError> {
         let study = &experiment.scene.study;
         let of_noise = experiment.simulated().zip(study.noise.as_ref());
@@ -115,32 +115,32 @@ impl<'a> Studies<'a> {
         let basins = of_guesses.map(|study| BasinTrials::new(experiment, study, interrupt)).transpose()?;
         let of_palms = study.curvature.as_ref().filter(|_| experiment.simulated().is_some());
         let curvature = of_palms.map(|study| CurvatureTrials::new(experiment, study)).transpose()?;
-        let (asked, readings) = (asked(experiment), readings(experiment));
-        Ok(Studies { experiment, noise, basins, curvature, asked, readings })
+        let (asked, measurements) = (asked(experiment), measurements(experiment));
+        Ok(Studies { experiment, noise, basins, curvature, asked, measurements })
     }
 
-    /// What is asked, as a number: the version of the program, the text of the scene and of its model with what it takes from other
-    /// files, and the seed.
+    /// The fingerprint of the question: the version of the program, the text of the scene and of its model with the other files that it
+    /// imports, and the seed.
     pub fn fingerprint(&self) -> u64 {
         self.asked
     }
 
-    /// How many trials there are.
+    /// The number of trials.
     pub fn trials(&self) -> u64 {
         (self.draws() + self.guesses() + self.curvature.as_ref().map_or(0, CurvatureTrials::count)) as u64
     }
 
-    /// How many of them are draws of noise.
+    /// The number of draws of noise among them.
     fn draws(&self) -> usize {
         self.noise.as_ref().map_or(0, NoiseTrials::count)
     }
 
-    /// How many are first guesses.
+    /// The number of first guesses.
     fn guesses(&self) -> usize {
         self.basins.as_ref().map_or(0, BasinTrials::count)
     }
 
-    /// Of a stretch of trials the draws of noise, the first guesses and the bounds, each by their places among all.
+    /// The draws of noise, the first guesses and the bounds of a stretch of trials, each by their indices among all.
     fn kinds(&self, places: &Range<usize>) -> [Range<usize>; 3] {
         let ends = [0, self.draws(), self.draws() + self.guesses(), self.trials() as usize];
         [0, 1, 2].map(|kind| {
@@ -148,7 +148,7 @@ impl<'a> Studies<'a> {
         })
     }
 
-    /// Makes a stretch of trials, side by side; nothing where that was interrupted. What comes of each depends on its place alone.
+    /// Makes a stretch of trials, side by side; nothing where that was interrupted. The result of each depends on its place alone.
     /// `done` is called once a trial.
     pub fn part(
         &self,
@@ -178,11 +178,11 @@ impl<'a> Studies<'a> {
         };
         let noise = draws.into_par_iter().map(of_noise).collect::<Option<Vec<Trial>>>()?;
         let arrives = guesses.into_par_iter().map(of_guess).collect::<Option<Vec<bool>>>()?;
-        let told = bounds.into_par_iter().map(of_palms).collect::<Option<Vec<Told>>>()?;
-        // one that was interrupted on its way came to something else
+        let told = bounds.into_par_iter().map(of_palms).collect::<Option<Vec<WindowBound>>>()?;
+        // an interrupted trial has another result
         goes_on().then_some(StudyPart {
             asked: self.asked,
-            readings: self.readings,
+            measurements: self.measurements,
             trials: self.trials(),
             first,
             last,
@@ -192,11 +192,11 @@ impl<'a> Studies<'a> {
         })
     }
 
-    /// What parts that together are all trials, each once and in any order, come to: what [`noise_study`](super::noise_study),
-    /// [`basins`](super::basins) and [`curvature_map`](super::curvature_map) find in one run, to the last bit.
+    /// Merges parts that together are all trials, each once and in any order: the results of [`noise_study`](super::noise_study),
+    /// [`basins`](super::basins) and [`curvature_map`](super::curvature_map) in one run, to the last bit.
     ///
     /// # Errors
-    /// Parts with gaps or overlaps, of another question, or from other readings.
+    /// Parts with gaps or overlaps, of another question, or from other measurements.
     pub fn merge(&self, parts: Vec<(String, StudyPart)>) -> Result<Studied, StudyMergeError> {
         if parts.is_empty() {
             return Err(StudyMergeError::NoParts);
@@ -206,7 +206,7 @@ impl<'a> Studies<'a> {
             if part.asked != self.asked || part.trials != self.trials() {
                 return Err(StudyMergeError::OtherQuestion(name.clone()));
             }
-            if part.readings != self.readings {
+            if part.measurements != self.measurements {
                 return Err(StudyMergeError::OtherReadings(name.clone()));
             }
             let kinds = self.kinds(&(part.first as usize..part.last as usize));
@@ -230,7 +230,7 @@ impl<'a> Studies<'a> {
     }
 }
 
-/// What is asked, as a number.
+/// The fingerprint of the question.
 fn asked(experiment: &Experiment) -> u64 {
     let mut found = Fingerprint::default();
     found.system(&experiment.system);
@@ -239,8 +239,8 @@ fn asked(experiment: &Experiment) -> u64 {
     found.value()
 }
 
-/// What is read and what is true, as a number: where it differs, trials come to something else.
-fn readings(experiment: &Experiment) -> u64 {
+/// The fingerprint of the measurements and the truth: where it differs, trials have other results.
+fn measurements(experiment: &Experiment) -> u64 {
     let mut found = Fingerprint::default();
     let mut numbers = |name: &str, values: &[f64]| {
         found.text(name);

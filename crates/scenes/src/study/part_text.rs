@@ -1,25 +1,25 @@
-//! A part of a scene's studies as JSON that is whole or refused.
+//! A part of a scene's studies as JSON, which is complete or refused.
 
-use super::curvature::Told;
+use super::curvature::WindowBound;
 use super::noise::Trial;
 use super::part::StudyPart;
 use palmistry_io::parts::{Bits, CONTRADICTS, PartError, seal, unseal};
 use serde::{Deserialize, Serialize};
 
-/// What the text of a part begins with; another number where its fields mean something else.
+/// The first field of a part's text; another number where its fields have another meaning.
 const FORMAT: &str = "palmistry observe part 2";
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Written {
     question: Bits,
-    readings: Bits,
+    measurements: Bits,
     trials: u64,
     first: u64,
     last: u64,
     noise: Vec<Option<WrittenEstimate>>,
     arrives: Vec<bool>,
-    /// Bounds in m; infinite where blind, none where the body is not held.
+    /// Bounds in m; infinite where unobservable, none where the body is not held.
     told: Vec<Option<Bits>>,
 }
 
@@ -31,7 +31,7 @@ struct WrittenEstimate {
 }
 
 impl StudyPart {
-    /// As JSON, with a checksum. It tells no times.
+    /// As JSON, with a checksum. It contains no times.
     pub fn text(&self) -> Option<String> {
         let trial = |trial: &Trial| match trial {
             Trial::Failed => None,
@@ -42,7 +42,7 @@ impl StudyPart {
         };
         let written = Written {
             question: Bits(self.asked),
-            readings: Bits(self.readings),
+            measurements: Bits(self.measurements),
             trials: self.trials,
             first: self.first,
             last: self.last,
@@ -66,20 +66,20 @@ impl StudyPart {
                 fits,
             },
         };
-        let Written { question, readings, trials, first, last, noise, arrives, told } = written;
+        let Written { question, measurements, trials, first, last, noise, arrives, told } = written;
         let made = (noise.len() + arrives.len() + told.len()) as u64;
         if last.checked_sub(first) != Some(made) || last > trials {
             return Err(CONTRADICTS);
         }
         let noise = noise.into_iter().map(trial).collect();
         let bound = |bits: Option<Bits>| match bits.map(|Bits(bits)| f64::from_bits(bits)) {
-            None => Ok(Told::NotHeld),
-            Some(f64::INFINITY) => Ok(Told::Blind),
-            Some(bound) if bound >= 0.0 => Ok(Told::Bound(bound)),
+            None => Ok(WindowBound::NotHeld),
+            Some(f64::INFINITY) => Ok(WindowBound::Unobservable),
+            Some(bound) if bound >= 0.0 => Ok(WindowBound::Bound(bound)),
             Some(_) => Err(CONTRADICTS),
         };
         let told = told.into_iter().map(bound).collect::<Result<_, _>>()?;
-        let (asked, readings) = (question.0, readings.0);
-        Ok(StudyPart { asked, readings, trials, first, last, noise, arrives, told })
+        let (asked, measurements) = (question.0, measurements.0);
+        Ok(StudyPart { asked, measurements, trials, first, last, noise, arrives, told })
     }
 }

@@ -1,4 +1,4 @@
-//! Parts of studies are one run, and what is no whole is refused.
+//! Merged parts equal one run, and incomplete ones are refused.
 
 use super::part::*;
 use crate::{Experiment, NoiseLevel, Scene, basins, curvature_map, noise_study};
@@ -50,7 +50,7 @@ fn parts(studies: &Studies<'_>, of: u64) -> Vec<(String, StudyPart)> {
     (1..=of).rev().map(|number| (format!("{number}/{of}"), read(part(number)))).collect()
 }
 
-/// Oracle: the studies in one run, which know of no parts. More parts than trials are some that are empty.
+/// Oracle: the studies in one run, which use no parts. With more parts than trials some are empty.
 #[test]
 fn any_number_of_parts_is_one_run_to_the_last_bit() {
     let experiment = experiment();
@@ -97,7 +97,7 @@ fn what_is_no_whole_is_refused_by_name() {
         let overlap =
             StudyMergeError::Overlap { one: "2/3".to_owned(), other: "again".to_owned(), trials: third };
         assert_eq!(merged(&[&a, &b, &("again".to_owned(), b.1.clone()), &c]), Some(overlap));
-        // numbers that are no whole, under a right checksum
+        // incomplete numbers, under a right checksum
         let mut short = b.clone();
         short.1.noise.pop();
         short.1.arrives.push(true);
@@ -105,7 +105,7 @@ fn what_is_no_whole_is_refused_by_name() {
         all
     };
     let first = || all.last().unwrap().0.clone();
-    // the same question, other readings
+    // the same question, other measurements
     let mut other = experiment.clone();
     let (name, value) = other.question.guess[0].clone();
     other.question.guess[0] = (name, value + 1e-15 * value.abs().max(1.0));

@@ -1,11 +1,11 @@
-//! Closure: wheel 2 rolls over what wheel 1 has drawn.
+//! Closure: wheel 2 rolls over the ground that wheel 1 has drawn.
 //!
-//! That ties what is read now to what was read before, by a delay that depends on the motion itself, and is in no finite set of Lie derivatives. So its rank is *computed*: all readings of the
-//! record drive the motion from what is unknown at its start, each equation that they have to meet is differentiated by the unknowns at the true ones, and the
+//! That ties present measurements to past ones, by a delay that depends on the motion itself, and is in no finite set of Lie derivatives. So its rank is *computed*: all measurements of the
+//! record drive the motion from the unknowns at its start, each equation that they have to satisfy is differentiated by the unknowns at the true ones, and the
 //! singular values of all these rows are counted, once without the rows of the closure and once with them. It holds for this drive, and proves nothing of others.
 //!
-//! Where forces are read, the equations are that neither wheel moves along the ground's normal. Where angles alone are read these give how fast the robot turns for
-//! its speed, which is taken to be constant (as the thesis has it), and say nothing more.
+//! Where forces are measured, the equations are that neither wheel moves along the ground's normal. Where angles alone are measured these give how fast the robot turns for
+//! its speed, which is taken to be constant (as the thesis has it), and nothing more.
 
 use super::closure_rank::ComputedRank;
 use super::{SimulatedRobot, drive, turned_back};
@@ -13,28 +13,28 @@ use nalgebra::SVector;
 use num_dual::{Derivative, DualNum, DualSVec64};
 use palmistry_bodies::mechanics::terrain::RobotMoment;
 
-/// Intervals of time at most whose ends are samples of the closure.
+/// The most intervals of time whose ends are samples of the closure.
 const INTERVALS: usize = 240;
 
-/// A step of the integration is no longer than this part of the distance between the wheels.
+/// A step of the integration is no longer than this fraction of the distance between the wheels.
 const STEP: f64 = 0.02;
 
-/// The track of wheel 1 between its samples is a polynomial through so many of them.
+/// The track of wheel 1 between its samples is a polynomial through this many of them.
 const NODES: usize = 8;
 
-/// What is unknown where forces and angles are read: velocity in the robot's frame, rate, attitude; `1/m` and the square of the radius of gyration; the place; and the rods.
+/// The unknowns where forces and angles are measured: velocity in the robot's frame, rate, attitude; `1/m` and the square of the radius of gyration; the place; and the rods.
 const BY_FORCES: [&str; 12] =
     ["ux", "uy", "omega", "phi0", "one_over_m", "rho2", "x", "y", "l1", "h1", "l2", "h2"];
 
-/// What is unknown where angles alone are read: the speed of wheel 1, attitude, place; the distance from wheel to wheel and its direction in the robot's frame.
+/// The unknowns where angles alone are measured: the speed of wheel 1, attitude, place; the distance from wheel to wheel and its direction in the robot's frame.
 const BY_ANGLES: [&str; 6] = ["v1", "phi0", "x", "y", "base", "lean"];
 
-/// What is read and what is not known, and the ranks.
+/// The measurements, the unknowns and the ranks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosureSetting {
-    /// In words.
+    /// The measurements, as text.
     pub read: &'static str,
-    /// By name.
+    /// The names of the unknowns.
     pub unknowns: Vec<&'static str>,
     /// Without the closure.
     pub without: ComputedRank,
@@ -43,34 +43,34 @@ pub struct ClosureSetting {
 }
 
 impl ClosureSetting {
-    /// The unknowns that are told by themselves with the closure, and are not without it.
+    /// The unknowns that are observable with the closure, and not without it.
     pub fn gained(&self) -> Vec<&'static str> {
-        let gained = |place: &usize| self.with.told[*place] && !self.without.told[*place];
+        let gained = |place: &usize| self.with.observable[*place] && !self.without.observable[*place];
         (0..self.unknowns.len()).filter(gained).map(|place| self.unknowns[place]).collect()
     }
 
-    /// The unknowns that are not told by themselves with the closure.
-    pub fn not_told(&self) -> Vec<&'static str> {
-        let left = |place: &usize| !self.with.told[*place];
+    /// The unknowns that are unobservable with the closure.
+    pub fn unobservable(&self) -> Vec<&'static str> {
+        let left = |place: &usize| !self.with.observable[*place];
         (0..self.unknowns.len()).filter(left).map(|place| self.unknowns[place]).collect()
     }
 }
 
-/// What the closure of a drive adds.
+/// The effect of the closure of a drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Closure {
     /// The time from which on wheel 2 is where wheel 1 has been, in s: none where it never is.
     pub from: Option<f64>,
-    /// How many samples meet it, and of how many.
+    /// The number of samples that it constrains, and of all samples.
     pub samples: [usize; 2],
-    /// What is read, and what that tells.
+    /// The ranks for each set of measurements.
     pub settings: Vec<ClosureSetting>,
 }
 
-/// The drive at all times at which the integration looks at the readings.
+/// The drive at all times at which the integration uses the measurements.
 struct Looked {
     moments: Vec<RobotMoment>,
-    /// Every so many moments is a sample.
+    /// The number of moments from one sample to the next.
     stride: usize,
 }
 
@@ -81,7 +81,7 @@ impl Looked {
         let longest = samples.windows(2).map(|ends| ends[1] - ends[0]).fold(0.0, f64::max);
         let [[l1, h1], [l2, h2]] = simulated.robot.wheels;
         let way = longest * simulated.robot.speed.abs() / (l2 - l1).hypot(h2 - h1);
-        // a step of Runge and Kutta has a beginning, a middle and an end
+        // a step of Runge and Kutta has a start, a middle and an end
         let stride = 2 * ((way / STEP).ceil().clamp(1.0, 1e3) as usize);
         let between = samples.windows(2).flat_map(|ends| {
             (0..stride).map(move |part| ends[0] + (ends[1] - ends[0]) * part as f64 / stride as f64)
@@ -122,7 +122,7 @@ impl Looked {
     }
 }
 
-/// How far below what wheel 1 has drawn until now wheel 2 is; none where it has drawn nothing there.
+/// The height of the track of wheel 1 until now above wheel 2; none where it has drawn nothing there.
 fn gap<D: DualNum<Primitive = f64> + Copy>(drawn: &[[D; 2]], wheel: [D; 2], direction: f64) -> Option<D> {
     let along = |place: &[D; 2]| direction * place[0].re();
     let (first, last) = (drawn.first()?, drawn.last()?);
@@ -151,7 +151,7 @@ struct Rows {
     closed: Vec<f64>,
 }
 
-/// A number that is an unknown.
+/// Numbers as unknowns of the derivatives.
 fn unknowns<const N: usize>(values: [f64; N]) -> [DualSVec64<N>; N] {
     std::array::from_fn(|i| {
         let slopes = SVector::from_fn(|j, _| if i == j { 1.0 } else { 0.0 });
@@ -163,7 +163,7 @@ fn row<const N: usize>(value: &DualSVec64<N>) -> Vec<f64> {
     value.eps.0.map_or_else(|| vec![0.0; N], |slopes| slopes.iter().copied().collect())
 }
 
-/// Both wheels sample by sample, and what the second one meets of what the first has drawn.
+/// Both wheels sample by sample, and the closure equations of the second one with the track of the first.
 fn closing<const N: usize>(
     looked: &Looked,
     wheels: &[[[DualSVec64<N>; 2]; 2]],
@@ -181,7 +181,7 @@ fn world<D: DualNum<Primitive = f64> + Copy>(angle: D, [l, h]: [D; 2]) -> [D; 2]
     [cosine * l - sine * h, sine * l + cosine * h]
 }
 
-/// What is read of a moment: both angles of the ground against the robot.
+/// The measured angles at a moment: both angles of the ground against the robot.
 fn angles(at: &RobotMoment) -> [f64; 2] {
     at.inclinations.map(|inclination| inclination - at.phi0)
 }
@@ -266,7 +266,7 @@ fn setting(read: &'static str, all: &[&'static str], rows: &Rows, sought: usize)
 }
 
 impl Closure {
-    /// Of the drive of a robot that is read at these times; none where it has no motion.
+    /// For the drive of a robot that is measured at these times; none where it has no motion.
     pub(crate) fn of(simulated: &SimulatedRobot, times: &[f64]) -> Option<Closure> {
         let looked = Looked::of(simulated, times);
         let direction = simulated.robot.speed.signum();

@@ -1,4 +1,4 @@
-//! A robot that draws the ground it rolls over (section 6.2): what its gauges read, and what it adds that wheel 2 rolls where wheel 1 has been.
+//! A robot that draws the ground it rolls over (section 6.2): the measurements of its gauges, and the closure, that wheel 2 rolls where wheel 1 has been.
 
 mod closure;
 mod closure_rank;
@@ -13,7 +13,7 @@ use palmistry_bodies::mechanics::terrain::{Ground, GroundWave, Robot, RobotDrive
 use palmistry_observe::{Lost, Response};
 use std::collections::BTreeMap;
 
-/// The robot and its ground as the mechanics have them.
+/// The robot and its ground in the form of the mechanics crate.
 fn bodies(simulated: &SimulatedRobot) -> (Robot, Ground) {
     let robot = &simulated.robot;
     let waves = simulated.ground.waves.iter().map(|wave| GroundWave {
@@ -43,7 +43,7 @@ fn turned_back(moment: &RobotMoment, [x, y]: [f64; 2]) -> [f64; 2] {
     [cosine * x + sine * y, cosine * y - sine * x]
 }
 
-/// What a motion is called in the models, state by state: as the proof files of section 6.2 have it.
+/// The states of a motion by the models' names: those of the proof files of section 6.2.
 fn states(moment: &RobotMoment) -> [(&'static str, f64); 13] {
     let [ux, uy] = turned_back(moment, moment.velocity);
     [
@@ -63,7 +63,7 @@ fn states(moment: &RobotMoment) -> [(&'static str, f64); 13] {
     ]
 }
 
-/// What the gauges read: the directions of the forces against the robot, how fast these turn, and the forces.
+/// The measurements of the gauges: the directions of the forces against the robot, how fast these turn, and the forces.
 fn read(moment: &RobotMoment) -> [(&'static str, f64); 7] {
     [
         ("beta1", moment.inclinations[0] - moment.phi0),
@@ -87,7 +87,7 @@ fn columns<const N: usize>(
 }
 
 impl SystemMotion {
-    /// The drive of the robot of a scene: all of it, or its beginning.
+    /// The drive of the robot of a scene: all of it, or its start.
     ///
     /// # Errors
     /// Where the robot does not get through two samples, with the place in the scene.

@@ -1,10 +1,10 @@
-//! The residuals in units in which their errors are independent and alike: what an error of a contact changes is carried on.
+//! The residuals in units in which their errors are independent and of one size: the effects of a contact's error on later samples are included.
 //!
 //! A contact that errs by `e` moves the residual at its own sample by the rate at which the constraint changes along the palm. It also
-//! makes the force err, which is a torque over the contact's lever, and the force's error stays in velocity, place and rate
-//! at all later samples. So the residuals' errors hang together; least squares that weighs each by its own error alone wastes most of what
-//! readings with noise tell. The errors of `(c, v, omega)` from sample to sample are a Markov chain driven by the contacts' errors, and
-//! what a filter does not foresee of the residuals is white (T. Kailath, An innovations approach to least-squares estimation, 1968): the
+//! makes the force err, which is a torque over the contact's lever, and the force's error remains in velocity, place and rate
+//! at all later samples. So the residuals' errors are correlated; least squares that weights each by its own error alone wastes most of the
+//! information of measurements with noise. The errors of `(c, v, omega)` from sample to sample are a Markov chain driven by the contacts' errors, and
+//! the innovations of the residuals are white (T. Kailath, An innovations approach to least-squares estimation, 1968): the
 //! covariance of all residuals is never formed, and a window costs as many operations as it has samples.
 //!
 //! The integrals of errors are those of the trapezoidal rule: these are weights.
@@ -16,8 +16,8 @@ use super::normal::{Normal, Row, Sums, Unknowns, swept};
 const N: usize = 5;
 type Vector = [f64; N];
 
-/// What the filter foresees of the errors of `(c, v, omega)`: their covariance in units of a contact's variance, and what the
-/// residuals before tell of them, for the residual and each of its derivatives.
+/// The filter's prediction of the errors of `(c, v, omega)`: their covariance in units of a contact's variance, and their mean given the
+/// earlier residuals, for the residual and each of its derivatives.
 struct Carried {
     /// Its lower triangle.
     covariance: [Vector; N],
@@ -25,7 +25,7 @@ struct Carried {
 }
 
 impl Carried {
-    /// The covariances with what moves by these derivatives.
+    /// The covariances with a quantity that has these derivatives.
     #[inline(always)]
     fn covary(&self, by: &Vector) -> Vector {
         std::array::from_fn(|i| {
@@ -35,7 +35,7 @@ impl Carried {
         })
     }
 
-    /// The residuals of a sample with their derivatives, less what is foreseen, in units in which what is not is independent and alike.
+    /// The innovations of a sample's residuals with their derivatives, scaled so that they are independent and of one size.
     #[inline(always)]
     fn whiten(&mut self, rows: &mut [Row; 2], at: &Errors) {
         let mut gain = [[0.0; N]; 2];
@@ -119,15 +119,15 @@ impl Carried {
     }
 }
 
-/// What errors change at a sample.
+/// The effects of errors at a sample.
 struct Errors {
     /// The residuals' derivatives by `(c, v, omega)`.
     by: [Vector; 2],
     /// Those by both contacts here.
     own: [[f64; 2]; 2],
-    /// What each contact's error changes of `(c, v, omega)` for all later samples.
+    /// The change of `(c, v, omega)` at all later samples by each contact's error.
     later: [Vector; 2],
-    /// The variance of what else there is.
+    /// The variance of other errors.
     other: f64,
 }
 

@@ -4,21 +4,21 @@ use super::carried;
 use super::integrals::Integrals;
 use super::normal::{self, Look, Normal, Unknowns};
 
-/// How freely the unknowns are sought.
+/// Which unknowns are free.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Free {
-    /// All, `k` drawn to that of a disc as strongly as the residuals let it.
+    /// All, with a prior on `k`, that of a disc, weighted by the residuals.
     Drawn,
     /// All.
     All,
 }
 
-/// The places of what is free.
+/// The indices of the free unknowns.
 fn places(all: &Integrals) -> std::ops::Range<usize> {
     if all.log_k.is_some() { 0..5 } else { 0..6 }
 }
 
-/// The solution of a part of the normal equations with the diagonal made larger by a part of itself, by Cholesky; the lower triangle is
+/// The solution of a part of the normal equations with the diagonal enlarged by a fraction of itself, by Cholesky; the lower triangle is
 /// given.
 fn solve(normal: &Normal, places: &std::ops::Range<usize>, damping: f64) -> Option<[f64; 6]> {
     let (start, size) = (places.start, places.len());
@@ -52,9 +52,9 @@ fn solve(normal: &Normal, places: &std::ops::Range<usize>, damping: f64) -> Opti
     step.iter().all(|value| value.is_finite()).then_some(step)
 }
 
-/// How strongly `k` is drawn to that of a disc, in parts of the residuals.
+/// The weight of the prior on `k`, relative to the residuals.
 const DRAWN: f64 = 0.3;
-/// What is left of a contact, in parts of its length, where no further step is worth it.
+/// The residual of a contact, relative to its length, below which no further step is taken.
 const ROUNDING: f64 = 1e-8;
 /// `k` changes by no more than this factor's logarithm in one step.
 const LONGEST: f64 = 1.5;
@@ -68,7 +68,7 @@ pub(super) fn descend(
     steps: usize,
 ) -> (Unknowns, f64) {
     let places = places(all);
-    // a start for a descent by all samples need not be better than these let it
+    // a start for a descent by all samples need not be more accurate than some of them allow
     let settled = if look.stride > 1 { 1e-2 } else { 1e-6 };
     let nothing = all.samples.len() as f64 * (ROUNDING * all.length).powi(2);
     let mut x = start;
@@ -101,7 +101,7 @@ pub(super) fn descend(
         let is_settled = drawn(cost, &there) > before * (1.0 - settled) || cost <= nothing;
         (x, reached) = (there, cost);
         damping *= 0.1;
-        // who takes no further step needs no derivatives
+        // the last step needs no derivatives
         if is_settled || taken + 1 == steps {
             break;
         }
@@ -110,13 +110,13 @@ pub(super) fn descend(
     (x, reached)
 }
 
-/// Rates below this part of the largest likely one are softened where errors are carried on.
+/// Rates below this fraction of the largest likely one are softened where errors are carried on.
 const SOFTENED: f64 = 0.0005;
 
-/// A step that makes the sum of the squares smaller by no more than this part of it is the last one.
+/// A step that lowers the sum of the squares by no more than this fraction is the last one.
 const SETTLED: f64 = 1e-3;
 
-/// Where a step leads that is to be the last by the normal equations, and what they foresee to be left: it is taken, and not looked back on.
+/// The end of a step that the normal equations predict to be the last, and the predicted cost: it is taken without an evaluation there.
 fn last_step(all: &Integrals, normal: &Normal, x: &Unknowns, damping: f64) -> Option<(Unknowns, f64)> {
     let step = solve(normal, &places(all), damping)?;
     let gained = -step.iter().zip(&normal.gradient).map(|(step, gradient)| step * gradient).sum::<f64>();
@@ -128,11 +128,11 @@ pub(super) struct End {
     pub x: Unknowns,
     /// The sum of the squares there.
     pub cost: f64,
-    /// The normal equations there, of residuals as the errors of contacts leave them, where they are at hand.
+    /// The normal equations there, of the whitened residuals, where they are at hand.
     pub carried: Option<Normal>,
 }
 
-/// Levenberg and Marquardt's method by the residuals as the errors of contacts leave them, all unknowns let go.
+/// Levenberg and Marquardt's method on the whitened residuals, with all unknowns free.
 pub(super) fn refine(all: &Integrals, start: Unknowns, steps: usize) -> End {
     let places = places(all);
     let softened = SOFTENED * all.rate;
@@ -170,7 +170,7 @@ pub(super) fn refine(all: &Integrals, start: Unknowns, steps: usize) -> End {
 }
 
 /// The least standard deviations of the palms' radii and the rate where a descent ended, for contacts whose errors have the deviation one; infinite where
-/// they are not told.
+/// they are not observable.
 pub(super) fn deviations(all: &Integrals, end: &End) -> [f64; 3] {
     let places = places(all);
     let normal = end.carried.clone().unwrap_or_else(|| carried::expand(all, &end.x, SOFTENED * all.rate));

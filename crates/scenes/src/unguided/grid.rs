@@ -1,12 +1,12 @@
-//! Where a search begins: the rate and its slope on a grid, all else by linear least squares.
+//! Initial values: the rate and its slope on a grid, all else by linear least squares.
 //!
 //! A window is so short that the body's rate is nearly a straight line through it. Where that line is given the constraint is linear in the centre and
-//! its velocity, and so is its weight known: nothing is sought there, and no false minimum is met in these four unknowns. `k` follows from the slope.
+//! its velocity, and so is its weight known: no search is needed, and no false minimum is met in these four unknowns. `k` follows from the slope.
 
 use super::integrals::Integrals;
 use super::normal::Unknowns;
 
-/// Where `k` begins, its logarithm is that of a disc within this.
+/// The logarithm of the initial `k` is that of a disc within this.
 const UNLIKE: f64 = 1.5;
 
 /// A grid over rates at the first sample and their slopes.
@@ -14,7 +14,7 @@ const UNLIKE: f64 = 1.5;
 pub(super) struct Grid {
     /// Rates, and slopes, from one end to the other.
     pub size: [usize; 2],
-    /// Samples that are looked at.
+    /// The number of samples that are used.
     pub samples: usize,
     /// Rates of sliding below this part of the largest likely rate are softened.
     pub softened: f64,
@@ -25,7 +25,7 @@ struct Row {
     normal: [f64; 2],
     time: f64,
     rate: f64,
-    /// The residual of a body whose centre starts at rest in the origin: without a rate, and what a rate adds.
+    /// The residual of a body whose centre starts at rest in the origin: without a rate, and the part proportional to the rate.
     still: f64,
     turning: f64,
 }
@@ -37,7 +37,7 @@ fn part(i: usize, of: usize) -> f64 {
 }
 
 impl Grid {
-    /// At each rate the slopes that leave less than the slopes beside, those first that leave least. The valleys are narrow and aslant: minima
+    /// At each rate the slopes whose residual is a local minimum over slopes, sorted by the residual. The valleys are narrow and aslant: minima
     /// over rates, too, would lose many.
     pub(super) fn minima(self, all: &Integrals) -> Vec<(Unknowns, f64)> {
         let stride = ((all.samples.len() - 1) / (self.samples - 1)).max(1);
@@ -87,7 +87,7 @@ impl Grid {
     }
 }
 
-/// `k` by which the forces turn the body as fast as the slope says; that of a disc where it is none of a body.
+/// `k` by which the forces turn the body as fast as the slope requires; that of a disc where it is none of a body.
 fn log_k(all: &Integrals, x: &Unknowns, slope: f64) -> f64 {
     let likely = all.likely_log_k([x[0], x[1]]);
     if all.log_k.is_some() {
@@ -104,7 +104,7 @@ fn log_k(all: &Integrals, x: &Unknowns, slope: f64) -> f64 {
     if k > 0.0 && k.is_finite() { k.ln().clamp(likely - UNLIKE, likely + UNLIKE) } else { likely }
 }
 
-/// Centre and velocity for a rate that is a line, and what is left.
+/// Centre and velocity for a rate that is a line, and the residual sum of squares.
 fn solved(rows: &[Row], [rate, slope]: [f64; 2], least: f64) -> Option<(Unknowns, f64)> {
     let mut m = [[0.0; 4]; 4];
     let mut g = [0.0; 4];

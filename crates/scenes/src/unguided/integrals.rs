@@ -1,4 +1,4 @@
-//! The integrals of the readings that the constraint is made of.
+//! The integrals of the measurements that the constraint needs.
 
 use super::PalmMeasurements;
 
@@ -19,13 +19,13 @@ pub(super) struct PalmSample {
     pub tangent: [f64; 2],
     pub contact: [f64; 2],
     pub own: f64,
-    /// How fast the lever grows with the contact.
+    /// The derivative of the lever by the contact's place.
     pub lever_slope: f64,
     /// The contact force, along the normal.
     pub force: f64,
 }
 
-/// What the constraint needs at one sample.
+/// The quantities of the constraint at one sample.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sample {
     /// Since the first sample.
@@ -43,15 +43,15 @@ pub(super) struct Sample {
 pub(super) struct Integrals {
     pub samples: Vec<Sample>,
     pub mass: f64,
-    /// Where the radius of gyration is known, the logarithm of `k`.
+    /// The logarithm of `k`, where the radius of gyration is known.
     pub log_k: Option<f64>,
     /// The standard deviation of a contact, where it is known.
     pub sigma: Option<f64>,
     /// A length of the size of the contacts'.
     pub length: f64,
-    /// A rate that is larger than the body's is likely to be.
+    /// A rate above the likely ones of the body.
     pub rate: f64,
-    /// An angular acceleration that is larger than the body's is likely to be.
+    /// An angular acceleration above the likely ones of the body.
     pub slope: f64,
 }
 
@@ -113,8 +113,8 @@ fn is_alike(times: &[f64], [before, here]: [usize; 2], [first_before, first]: [u
 
 impl Integrals {
     /// Of a window with at least four samples; none where a contact lies on the hinge or palms are parallel.
-    pub fn of(readings: &PalmMeasurements) -> Option<Integrals> {
-        let PalmMeasurements { times, contacts, angles, mass, palms, .. } = readings;
+    pub fn of(measurements: &PalmMeasurements) -> Option<Integrals> {
+        let PalmMeasurements { times, contacts, angles, mass, palms, .. } = measurements;
         let n = times.len();
         let rule = Rule::of(times);
         let mut samples = vec![Sample::default(); n];
@@ -131,7 +131,7 @@ impl Integrals {
                 let normal = [nx * cosine - side * ny * sine, nx * sine + side * ny * cosine];
                 let [cx, cy] = [along * cosine - side * above * sine, along * sine + side * above * cosine];
                 let tangent = [side * normal[1], -side * normal[0]];
-                let rate = readings.rates[p][i];
+                let rate = measurements.rates[p][i];
                 let mut palm = PalmSample {
                     normal,
                     tangent,
@@ -145,12 +145,13 @@ impl Integrals {
                     lever_slope: side + bend * height,
                     force: 0.0,
                 };
-                let torque = readings.torques[p][i] - readings.inertia[p] * readings.accelerations[p][i];
+                let torque =
+                    measurements.torques[p][i] - measurements.inertia[p] * measurements.accelerations[p][i];
                 palm.force = torque / palm.lever;
                 sample.palms[p] = palm;
             }
         }
-        let gravity = [0.0, readings.gravity];
+        let gravity = [0.0, measurements.gravity];
         let pushes: Vec<[f64; 2]> = samples
             .iter()
             .map(|sample| [0, 1].map(|axis| sample.palms.iter().map(|p| p.force * p.normal[axis]).sum()))
@@ -174,21 +175,21 @@ impl Integrals {
 
         let mean = |values: &[f64]| values.iter().sum::<f64>() / n as f64;
         let length = contacts.iter().map(|contacts| mean(contacts).abs()).sum::<f64>() / 2.0;
-        let turned = readings.rates.iter().flatten().fold(0.0, |most: f64, rate| most.max(rate.abs()));
+        let turned = measurements.rates.iter().flatten().fold(0.0, |most: f64, rate| most.max(rate.abs()));
         let fastest = contacts.iter().map(|contacts| fastest(times, contacts)).fold(0.0, f64::max);
         let pushed = pushes.iter().map(|[x, y]| x.hypot(y + mass * gravity[1]));
         let acceleration = pushed.fold(0.0, f64::max) / mass;
         let rate = 1.5 * (fastest / length + turned + (acceleration / length).sqrt());
         let slope = 3.0 * acceleration / length;
         meeting(&samples[0])?;
-        let log_k = readings.gyration.map(|gyration| -(mass * gyration * gyration).ln());
-        let sigma = readings.sigma;
+        let log_k = measurements.gyration.map(|gyration| -(mass * gyration * gyration).ln());
+        let sigma = measurements.sigma;
         let all = Integrals { samples, mass: *mass, log_k, sigma, length, rate, slope };
         let ends = all.samples.last().map_or(f64::NAN, |end| end.c + end.place[0] + end.place[1]);
         (ends.is_finite() && rate.is_finite() && length > 0.0).then_some(all)
     }
 
-    /// By how much `c`, at a distance from the palms, is likely to turn: `k` of a disc whose radius is the mean of the distances'
+    /// The likely `k` of a body with its centre at a distance from the palms, that of a disc whose squared radius is the mean of the distances'
     /// squares; its logarithm.
     pub fn likely_log_k(&self, centre: [f64; 2]) -> f64 {
         self.log_k.unwrap_or_else(|| {
@@ -197,7 +198,7 @@ impl Integrals {
         })
     }
 
-    /// A body that turns faster than this is none: so large errors of one that spins explain everything.
+    /// The largest accepted rate: with a larger one the errors of a spinning body explain everything.
     pub fn fastest(&self) -> f64 {
         2.0 * self.rate
     }

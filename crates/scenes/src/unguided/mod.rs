@@ -1,13 +1,13 @@
-//! The state of a body between two palms, flat or circular, from a window of readings, without a first guess.
+//! The state of a body between two palms, flat or circular, from a window of measurements, without a first guess.
 //!
-//! What palm `i` tells of a body of unknown shape is that the body's material point at the contact does not enter it,
+//! The constraint of palm `i` on a body of unknown shape is that the body's material point at the contact does not enter the palm,
 //!
 //! ```text
 //! 0 = n_i · (c' + omega x (c_i - c) - w_i x c_i),
 //! ```
 //!
-//! with the contact `c_i`, the normal `n_i` and the palm's rate `w_i` as they are read, and the hinge at the origin. The contact forces
-//! follow from the torques, `f_i (c_i x n_i) = tau_i - I_i A_i` (4.7, 4.8). With them Newton's and Euler's laws are integrals of readings,
+//! with the contact `c_i`, the normal `n_i` and the palm's rate `w_i` as measured, and the hinge at the origin. The contact forces
+//! follow from the torques, `f_i (c_i x n_i) = tau_i - I_i A_i` (4.7, 4.8). With them Newton's and Euler's laws are integrals of measurements,
 //!
 //! ```text
 //! c(t)     = c0 + v0 t + P(t),                            m P'' = m g + sum f_i n_i
@@ -15,8 +15,8 @@
 //! A' = sum f_i (n_iy, -n_ix),   B' = t A',   C' = sum f_i c_i x n_i - A' · P,
 //! ```
 //!
-//! so that the constraint is a polynomial in `c0`, `v0`, `omega0` and `k` at every sample: nothing is integrated while they are sought.
-//! `search` seeks them; where contacts err, their errors are carried through the integrals (`carried`). No shape, no curvature and no derivative of a contact is in it.
+//! so that the constraint is a polynomial in `c0`, `v0`, `omega0` and `k` at every sample: nothing is integrated during the search.
+//! `search` estimates them; where contacts err, their errors are carried through the integrals (`carried`). No shape, no curvature and no derivative of a contact is in it.
 
 mod carried;
 mod descent;
@@ -31,10 +31,10 @@ pub(super) use scene::{Unguided, palm_measurements};
 use integrals::Integrals;
 use palmistry_bodies::mechanics::Palm;
 
-/// Fewer samples than these give no state.
+/// The fewest samples of an estimate.
 const FEWEST: usize = 12;
 
-/// A window of readings, and what is known. SI units; palms are seen from the world.
+/// A window of measurements, and known quantities. SI units; palms are in the world's frame.
 #[derive(Clone, Debug)]
 pub struct PalmMeasurements {
     /// In s.
@@ -59,7 +59,7 @@ pub struct PalmMeasurements {
     pub gravity: f64,
     /// The body's radius of gyration, where it is known.
     pub gyration: Option<f64>,
-    /// The standard deviation of the contacts, where it is known; zero for none.
+    /// The standard deviation of the contacts, where it is known; zero for exact ones.
     pub sigma: Option<f64>,
 }
 
@@ -78,15 +78,15 @@ pub struct FirstState {
     pub velocity: [f64; 2],
     /// The same along the normals of the palms, `v1` and `v2`.
     pub receding: [f64; 2],
-    /// The least standard deviations that `r1`, `r2` and `omega0` can have, by the stated noise of the contacts; zeros where none is stated.
+    /// The Cramér-Rao bounds of `r1`, `r2` and `omega0`, by the stated noise of the contacts; zeros where none is stated.
     pub deviations: [f64; 3],
-    /// The root of the mean square by which the contacts would have to be elsewhere.
+    /// The root mean square residual of the contacts.
     pub rms_residual: f64,
 }
 
 impl PalmMeasurements {
-    /// The state at the first sample that explains the readings best among those that were found; none where there are too few
-    /// readings, they are not finite, or nothing that has the body between the palms explains them.
+    /// The state at the first sample that explains the measurements best among those that were found; none where there are too few
+    /// measurements, they are not finite, or nothing that has the body between the palms explains them.
     pub fn first_state(&self) -> Option<FirstState> {
         let n = self.times.len();
         let columns = [&self.contacts, &self.angles, &self.rates, &self.accelerations, &self.torques];
@@ -100,8 +100,8 @@ impl PalmMeasurements {
         search::search(&Integrals::of(self)?)
     }
 
-    /// The bound of Cramér and Rao for `r1`, `r2` and `omega0` at a true state, by the constraint at all samples: of contacts without
-    /// errors, with the errors they are to have stated. None where nothing is stated.
+    /// The Cramér-Rao bound of `r1`, `r2` and `omega0` at a true state, by the constraint at all samples: for exact contacts,
+    /// with the errors that they are to have stated. None where no error is stated.
     pub fn bound_at(&self, truth: &FirstState) -> Option<[f64; 3]> {
         let (sigma, all) = (self.sigma?, Integrals::of(self)?);
         let log_k = -(self.mass * truth.gyration * truth.gyration).ln();
@@ -112,7 +112,7 @@ impl PalmMeasurements {
 }
 
 impl PalmMeasurements {
-    /// Some of the rows.
+    /// The given rows.
     ///
     /// # Panics
     /// When there are no such rows.
@@ -129,7 +129,7 @@ impl PalmMeasurements {
         }
     }
 
-    /// The motion from a first state on, by the integrals of the readings; none where there are too few.
+    /// The motion from a first state on, by the integrals of the measurements; none where there are too few.
     pub(super) fn motion(&self, first: &FirstState) -> Option<PalmMotion> {
         if self.times.len() < FEWEST {
             return None;

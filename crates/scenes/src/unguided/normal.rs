@@ -1,11 +1,11 @@
-//! The constraint's residuals at all samples, each weighed by its own error.
+//! The constraint's residuals at all samples, each weighted by its own error.
 
 use super::integrals::{Integrals, PalmSample, Sample};
 
 /// `c0`, `v0`, `omega0` and the logarithm of `k`.
 pub(super) type Unknowns = [f64; 6];
 
-/// The sum of the squares of the residuals, half of its gradient, and its matrix of second derivatives by Gauss and Newton.
+/// The sum of the squares of the residuals, half of its gradient, and its Gauss-Newton matrix.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Normal {
     pub cost: f64,
@@ -36,12 +36,12 @@ impl Sums {
     }
 }
 
-/// Which samples are looked at, and how residuals are weighed.
+/// Which samples are used, and how residuals are weighted.
 #[derive(Clone, Copy)]
 pub(super) struct Look {
     /// Every so many samples.
     pub stride: usize,
-    /// A residual is the palm's distance of where a contact is from where it had to be: the constraint over its rate of change by that,
+    /// A residual is the distance along the palm between a contact and its expected place: the constraint over its rate of change by that,
     /// which is `omega - w_i` of a flat palm; rates below this one are softened.
     pub softened: f64,
 }

@@ -9,17 +9,17 @@ use palmistry_math::number::rational_to_f64;
 use palmistry_observe::Signals;
 use std::collections::BTreeMap;
 
-/// What the readings of a scene's first window tell of its first state.
+/// The first state estimated from the measurements of a scene's first window.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Unguided {
     found: Option<FirstState>,
 }
 
 impl Unguided {
-    /// From the readings of a first window and what is known.
+    /// From the measurements of a first window and the known constants.
     ///
     /// # Errors
-    /// Where a reading or a constant is missing that the laws of motion need, or nothing explains the readings.
+    /// Where a measurement or a constant is missing that the laws of motion need, or nothing explains the measurements.
     pub fn of(
         scene: &Scene,
         system: &System,
@@ -27,11 +27,11 @@ impl Unguided {
         signals: &Signals,
     ) -> Result<Unguided, SceneError> {
         let rows = (scene.observer.window + 1).min(signals.times().len());
-        let readings = palm_measurements(scene, system, known, signals, rows).map_err(|name| {
+        let measurements = palm_measurements(scene, system, known, signals, rows).map_err(|name| {
             let help = "give it under `known`, hand over a column of that name, or give a first guess";
             refuse(scene, format!("without '{name}' no state is found without a first guess"), help)
         })?;
-        let found = readings.first_state().ok_or_else(|| {
+        let found = measurements.first_state().ok_or_else(|| {
             let help = "give a first guess, or a longer window";
             refuse(
                 scene,
@@ -42,10 +42,10 @@ impl Unguided {
         Ok(Unguided { found: Some(found) })
     }
 
-    /// What was found of a state of the model.
+    /// The estimate of a state of the model.
     ///
     /// # Errors
-    /// Where it is none of those that are found.
+    /// Where it is not among the estimated ones.
     pub fn value(&self, scene: &Scene, name: &str) -> Result<f64, SceneError> {
         let value = self.found.and_then(|found| match name {
             "r1" => Some(found.radii[0]),
@@ -67,7 +67,7 @@ fn refuse(scene: &Scene, message: String, help: &str) -> SceneError {
     scene.error_at("observer.guess", message, "asked for here", help)
 }
 
-/// The first rows of a scene's readings, with what is known; or the name of what is missing.
+/// The first rows of a scene's measurements, with the known constants; or the name of a missing one.
 pub(crate) fn palm_measurements(
     scene: &Scene,
     system: &System,
@@ -87,7 +87,7 @@ pub(crate) fn palm_measurements(
         None => constant(name).map(|value| vec![value; rows]).ok_or(name),
     };
     let number = |name: &'static str| constant(name).ok_or(name);
-    // palm 2 is told against palm 1
+    // palm 2 is measured from palm 1
     let world = |first: &'static str, second: &'static str| -> Result<[Vec<f64>; 2], &'static str> {
         let (first, second) = (column(first)?, column(second)?);
         let sum = first.iter().zip(&second).map(|(first, second)| first + second).collect();

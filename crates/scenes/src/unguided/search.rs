@@ -1,7 +1,7 @@
 //! The best unknowns without a first guess: a grid over the body's rate and its slope, and descents from there.
 //!
-//! What leaves least on the grid is let go on a few samples, what leaves least there on all. Coarse grids come first: most windows need no other. What is
-//! accepted at once explains the readings, by chi-square where the noise is stated; only where nothing does the finer grids are searched.
+//! The best points of the grid are optimised on a few samples, and the best of these on all. Coarse grids come first: most windows need no other. A state
+//! accepted at once explains the measurements, by chi-square where the noise is stated; the finer grids are searched only where none does.
 
 use super::FirstState;
 use super::descent::{End, Free, descend, deviations, refine};
@@ -12,11 +12,11 @@ use super::normal::{Look, Unknowns};
 /// One pass over a grid.
 struct Pass {
     grid: Grid,
-    /// How many of its minima are let go on some samples.
+    /// The number of its minima that are optimised on some samples.
     kept: usize,
-    /// So many samples.
+    /// The number of these samples.
     samples: usize,
-    /// How many of these are let go on all samples.
+    /// The number of these that are optimised on all samples.
     polished: usize,
 }
 
@@ -31,23 +31,23 @@ const PASSES: [Pass; 4] = [
     pass([96, 32], 16, [200, 20, 24]),
 ];
 
-/// Rates below these parts of the largest are softened: while it is sought, and at the end.
+/// Rates below these fractions of the largest are softened: during the search, and at the end.
 const SOFTENED: [f64; 2] = [0.05, 0.002];
 
-/// What is left of a contact, in parts of its length, counts as nothing where its noise is not known.
+/// A residual of a contact below this fraction of its length counts as zero where its noise is not known.
 const NOTHING: f64 = 1e-6;
 
-/// A body that is no disc turns within this factor like one of its size.
+/// `k` of a body is within this factor of that of a disc of its size.
 const UNLIKELY: f64 = 30.0;
 
-/// What leaves less of some samples than this, in parts of a contact's length or in deviations of its noise, is likely to be the state.
+/// A residual on some samples below this, relative to a contact's length or in deviations of its noise, is likely to be that of the state.
 const LIKELY: [f64; 2] = [1e-4, 3.0];
 
-/// What leaves no more than this is taken at once, without a look at what else there is; and what leaves least of a pass is taken up to this.
+/// A state within this many deviations of chi-square is taken at once, without a search for others; and the best one of a pass is taken up to the second.
 const SURELY: f64 = 2.5;
 const BARELY: f64 = 5.0;
 
-/// What leaves more than so many variances of a contact is no state that carried errors explain.
+/// Above this many variances of a contact no carried errors explain the residual.
 const NEAR: f64 = 100.0;
 
 pub(super) fn search(all: &Integrals) -> Option<FirstState> {
@@ -76,10 +76,10 @@ pub(super) fn search(all: &Integrals) -> Option<FirstState> {
     Some(first_state(all, &best))
 }
 
-/// A descent by all samples, by the errors of contacts as they are carried on where their noise is known.
+/// A descent on all samples, with whitened residuals where the noise of the contacts is known.
 fn polished(all: &Integrals, candidate: Unknowns) -> End {
     let look = Look { stride: 1, softened: SOFTENED[1] * all.rate };
-    // two steps where what carries errors on takes the others
+    // two steps where the descent on whitened residuals takes the others
     let steps = if all.sigma.is_some() { 2 } else { 30 };
     let (x, cost) = descend(all, candidate, Free::All, look, steps);
     let near = NEAR * all.sigma.unwrap_or(0.0).powi(2) * 2.0 * all.samples.len() as f64;
@@ -87,8 +87,8 @@ fn polished(all: &Integrals, candidate: Unknowns) -> End {
 }
 
 impl Pass {
-    /// Tries where descents by some samples end on all, until what one ends with explains the readings. What leaves little of the few is tried at once,
-    /// the others, those first that leave least, when all have ended.
+    /// Tries the ends of descents by some samples on all, until one of them explains the measurements. Ends with a small residual are tried at once,
+    /// the others, sorted by their residual, when all have ended.
     fn is_explained(&self, all: &Integrals, mut explains: impl FnMut(Unknowns) -> bool) -> bool {
         let look =
             Look { stride: (all.samples.len() / self.samples).max(1), softened: SOFTENED[0] * all.rate };
@@ -115,7 +115,7 @@ impl Pass {
     }
 }
 
-/// Whether the body lies between the palms, and turns like one and not too fast.
+/// Whether the body lies between the palms, has a plausible inertia and does not turn too fast.
 fn is_body(all: &Integrals, x: &Unknowns) -> bool {
     let centre = [x[0], x[1]];
     let between = all.radii(centre).iter().all(|radius| *radius > 0.0);
@@ -125,12 +125,12 @@ fn is_body(all: &Integrals, x: &Unknowns) -> bool {
         && x.iter().all(|value| value.is_finite())
 }
 
-/// Whether nothing is left.
+/// Whether the residual is zero.
 fn is_nothing(all: &Integrals, cost: f64) -> bool {
     cost <= 2.0 * all.samples.len() as f64 * (NOTHING * all.length).powi(2)
 }
 
-/// Whether what is left is the noise of the contacts: so many deviations of the sum of as many squares above its mean at most.
+/// Whether the residual is the noise of the contacts: at most so many deviations of the sum of as many squares above its mean.
 fn is_explained(all: &Integrals, cost: f64, deviations: f64) -> bool {
     let n = 2.0 * all.samples.len() as f64;
     let noise = all.sigma.unwrap_or(0.0).powi(2) * (n + deviations * (2.0 * n).sqrt());

@@ -5,7 +5,7 @@ use palmistry_bodies::mechanics::moving::Ended;
 #[path = "../../../../benches/arrival/scenes.rs"]
 mod scenes;
 
-/// So many scenes of all four regimes that are held by both palms all the time, flat ones or circular ones.
+/// This many scenes of all four regimes that are held by both palms all the time, flat ones or circular ones.
 fn held(count: usize, is_circular: bool) -> Vec<Experiment> {
     let mut draws = scenes::Draws::new(1);
     let (mut held, mut drawn) = (Vec::new(), 0);
@@ -23,12 +23,12 @@ fn held(count: usize, is_circular: bool) -> Vec<Experiment> {
     held
 }
 
-/// The constraint and the integrals hold of motions that follow from Newton's laws and know neither: at the true state nothing is left.
+/// The constraint and the integrals hold for motions by Newton's laws, which use neither: at the true state the residual is zero.
 #[test]
 fn the_true_state_leaves_nothing() {
     for experiment in held(12, false).into_iter().chain(held(12, true)) {
-        let readings = experiment.palm_measurements().unwrap();
-        let all = Integrals::of(&readings).unwrap();
+        let measurements = experiment.palm_measurements().unwrap();
+        let all = Integrals::of(&measurements).unwrap();
         let moment = experiment.simulation.as_ref().unwrap().trajectory.moments[0];
         let gyration = experiment.simulation.as_ref().unwrap().constants["rho"];
         let [x, y] = moment.centre;
@@ -37,7 +37,7 @@ fn the_true_state_leaves_nothing() {
         let look = normal::Look { stride: 1, softened: 0.01 };
         let left = (normal::cost(&all, &truth, look) / 162.0).sqrt();
         assert!(left < 1e-7 * all.length, "{left:e}: {}", experiment.scene.title);
-        // and it is no matter of all states: one percent off leaves much more
+        // and it does not hold at all states: one percent off has a much larger residual
         let off = normal::cost(&all, &truth.map(|value| 1.01 * value), look);
         assert!((off / 162.0).sqrt() > 1e-5 * all.length, "{off:e}");
         for (radius, palm) in all.radii([x, y]).iter().zip(moment.palms) {
@@ -65,8 +65,8 @@ fn arrives(experiment: &Experiment) -> bool {
     found.iter().zip(truth).all(|(found, truth)| (found / truth - 1.0).abs() < 0.01)
 }
 
-/// Over many draws of errors what is found is as far off as the bound at the truth says. In some motions in which a palm and the body come to turn at one
-/// rate it is farther off even for small errors: nothing there is linear.
+/// Over many draws of errors the errors of the estimate are those of the bound at the truth. In some motions in which a palm and the body come to turn at one
+/// rate they are larger even for small errors: nothing there is linear.
 #[test]
 fn errors_are_as_large_as_the_bound() {
     let mut draws = scenes::Draws::new(5);
@@ -108,9 +108,9 @@ fn errors_are_as_large_as_the_bound() {
 fn what_is_known_is_not_sought() {
     for experiment in held(4, false) {
         let gyration = experiment.simulation.as_ref().unwrap().constants["rho"];
-        let readings =
+        let measurements =
             PalmMeasurements { gyration: Some(gyration), ..experiment.palm_measurements().unwrap() };
-        let found = readings.first_state().unwrap();
+        let found = measurements.first_state().unwrap();
         assert!((found.gyration / gyration - 1.0).abs() < 1e-12);
         let truth = experiment.truth_at(0.0).unwrap();
         assert!((found.radii[0] / truth[0] - 1.0).abs() < 1e-4, "{found:?} for {truth:?}");
@@ -121,14 +121,14 @@ fn what_is_known_is_not_sought() {
 fn what_is_no_window_gives_no_state() {
     let whole = held(1, false)[0].palm_measurements().unwrap();
     let changed = |change: fn(&mut PalmMeasurements)| {
-        let mut readings = whole.clone();
-        change(&mut readings);
-        readings.first_state()
+        let mut measurements = whole.clone();
+        change(&mut measurements);
+        measurements.first_state()
     };
     assert!(changed(|_| ()).is_some());
-    assert!(changed(|readings| readings.contacts[0][3] = f64::NAN).is_none());
-    assert!(changed(|readings| readings.contacts[0].fill(0.0)).is_none());
-    assert!(changed(|readings| readings.contacts[1].truncate(5)).is_none());
-    assert!(changed(|readings| readings.angles[1] = readings.angles[0].clone()).is_none());
-    assert!(changed(|readings| readings.times.truncate(0)).is_none());
+    assert!(changed(|measurements| measurements.contacts[0][3] = f64::NAN).is_none());
+    assert!(changed(|measurements| measurements.contacts[0].fill(0.0)).is_none());
+    assert!(changed(|measurements| measurements.contacts[1].truncate(5)).is_none());
+    assert!(changed(|measurements| measurements.angles[1] = measurements.angles[0].clone()).is_none());
+    assert!(changed(|measurements| measurements.times.truncate(0)).is_none());
 }

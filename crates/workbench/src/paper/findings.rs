@@ -20,7 +20,7 @@ use palmistry_scenes::{Answer, Experiment};
 pub struct DerivativesFound {
     /// The field along which is differentiated.
     pub field: String,
-    /// The output that is.
+    /// The output that is differentiated.
     pub output: String,
     /// Two routes to each, order by order.
     pub routes: Vec<RouteAgreement>,
@@ -30,13 +30,13 @@ pub struct DerivativesFound {
 
 /// What was found of one proof file.
 pub struct FileFindings {
-    /// The file as it was read; its name is as seen from the paper's folder.
+    /// The file as it was read; its name is relative to the paper's folder.
     pub system: System,
     /// The claims, in the order of the file.
     pub outcomes: Vec<Outcome>,
     /// The whole box first, then each named set.
     pub ranks: Vec<SetRank>,
-    /// Where the rank drops, of a file that claims something of a rank at all states.
+    /// Where the rank drops, for a file that claims a rank at all states.
     pub drops: Option<DropAnswer>,
     /// The maps that the file asks for.
     pub maps: Vec<MapFound>,
@@ -46,17 +46,17 @@ pub struct FileFindings {
     pub printed: Vec<PrintedExpression>,
     /// The reductions to other systems.
     pub reductions: Vec<ReductionFound>,
-    /// How fast Lie derivatives grow, of the file that was chosen.
+    /// How fast Lie derivatives grow, for the file that was chosen.
     pub derivatives: Option<DerivativesFound>,
-    /// Three ways of automatic differentiation to all Lie derivatives of the codistribution, of a file that names something to be looked at.
+    /// Agreement of three ways of automatic differentiation for all Lie derivatives of the codistribution, for a file that names sets, maps or lines.
     pub ways: Option<WaysAgreement>,
-    /// Speed against accuracy, in short.
+    /// Speed against accuracy, the short version.
     pub trade: Option<Trade>,
-    /// The extremes, in short.
+    /// The extremes, the short version.
     pub stress: Option<StressStudy>,
     /// The certificate on the sample box, after a few thousand sub-boxes.
     pub certificate: Option<RegionAnswer>,
-    /// What was not looked at, and why.
+    /// What was left out, and why.
     pub left_out: Vec<LeftOut>,
 }
 
@@ -110,13 +110,13 @@ pub struct Findings {
     pub paper: Paper,
     /// In the order of the paper.
     pub files: Vec<FileFindings>,
-    /// Bodies in motion, and what observers made of them.
+    /// Bodies in motion, and the estimates of the observers.
     pub experiments: Vec<(Experiment, Vec<Answer>)>,
-    /// Bodies at rest between slow palms, and what their readings tell.
+    /// Bodies at rest between slow palms, and the answers from their measurements.
     pub slow: Vec<(SlowExperiment, SlowAnswers)>,
-    /// Bodies in space on three palms, and what their readings tell.
+    /// Bodies in space on three palms, and the answers from their measurements.
     pub space: Vec<(SpaceExperiment, SpaceAnswers)>,
-    /// Several experiments with one set of parameters, and what they tell together.
+    /// Several experiments with one set of parameters, and the answer from all of them together.
     pub joint: Vec<(JointExperiments, JointAnswer)>,
     /// The seed of all that is drawn.
     pub seed: u64,

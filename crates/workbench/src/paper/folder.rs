@@ -25,7 +25,7 @@ pub struct Paper {
     pub source: Option<String>,
     /// Its numbered equations; none where the folder does not say.
     pub numbering: Numbering,
-    /// The folder; files are named as seen from here.
+    /// The folder, relative to which files are named.
     pub folder: PathBuf,
     /// The proof files in their order.
     pub files: Vec<String>,

@@ -19,9 +19,9 @@ pub struct NumberedEquation<'o> {
 }
 
 impl NumberedEquation<'_> {
-    /// One word for all entries; `no entry` where there are none. What is the matter with a form in the text comes first,
+    /// One word for all entries; `no entry` where there are none. A flaw of a form in the text comes first,
     /// then what is undecided; else it is the word of the entry that has the equation's own number, and where there are only
-    /// parts, the one that claims least. That a variant is refuted, where the file expects it, says nothing against the
+    /// parts, the one that claims least. A variant that is refuted, where the file expects it, does not count against the
     /// equation.
     pub fn word(&self) -> &'static str {
         if let Some(bad) = self.entries.iter().find(|outcome| !outcome.ok) {

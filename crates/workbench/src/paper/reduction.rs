@@ -1,6 +1,6 @@
 //! Whether a system is another one under conditions. What has to hold is written down in the language, as claims of the smaller
-//! file, and decided like any other: that the conditions stay met, that what is left out stays as it is, that fields, outputs
-//! and the differentials of the words that the rank needs are the same. And what that saves is counted.
+//! file, and decided like any other: that the conditions stay met, that states that are left out stay constant, that fields, outputs
+//! and the differentials of the Lie derivatives that the rank needs are the same. And the savings are counted.
 
 use super::left_out::LeftOut;
 use crate::tradeoff::{ModelComparison, compare_reduction};
@@ -143,14 +143,16 @@ fn claims(small: &System, large: &System, reduction: &ReductionTo) -> Result<(St
     for (place, (output, _)) in large.outputs.iter().enumerate() {
         match small.outputs.iter().position(|(other, _)| other == output) {
             Some(_) => claim("outputs", format!("{output} = {} {under}", of_large(place))),
-            // what is seen besides is known already
+            // the other outputs are known already
             None => {
                 let zeros = vec!["0"; states.len()].join(", ");
                 claim("outputs", format!("d({}, {columns}) = [{zeros}] {under}", of_large(place)));
             }
         }
     }
-    for word in words.needed.iter().map(|index| &words.words[*index]).filter(|word| !word.fields.is_empty()) {
+    for word in
+        words.needed.iter().map(|index| &words.lie_derivatives[*index]).filter(|word| !word.fields.is_empty())
+    {
         let taken = |prefix: &str, output: &str| {
             let along = word.fields.iter().map(|field| format!("{prefix}{}", small.fields[*field].name));
             let along: Vec<String> = along.collect();

@@ -33,7 +33,7 @@ pub struct VerifyOptions<'a> {
     pub interrupt: &'a AtomicBool,
     /// Called with each step that is done, and with the number of all steps.
     pub progress: &'a (dyn Fn(&str, u64, u64) + Sync),
-    /// Whether that is done of which nothing but times comes out.
+    /// Whether parts of which only the times are of interest are run as well.
     pub timed: bool,
 }
 
@@ -98,7 +98,7 @@ pub fn verify_into(
     for (place, system) in systems.iter().enumerate() {
         run.claims(place, system);
     }
-    // where files say what is to be looked at the others are only read and decided
+    // where some files name sets, maps or lines the others are only read and decided
     let any_named = systems.iter().any(names_something);
     for (place, system) in systems.iter().enumerate() {
         let measured = Measured {
@@ -118,7 +118,7 @@ pub fn verify_into(
     Ok(())
 }
 
-/// A scene of a paper with its readings, of whichever kind it is.
+/// A scene of a paper with its measurements, of whichever kind it is.
 enum Observable {
     Slow(Box<SlowExperiment>),
     Space(Box<SpaceExperiment>),
@@ -140,7 +140,7 @@ impl Observable {
         Ok(Observable::Moving(Box::new(Experiment::new(Scene::read(path)?, None)?)))
     }
 
-    /// What its readings tell; of a scene at rest, in space or of several experiments only what was followed to its end.
+    /// Runs it and keeps the answers from its measurements; for slow, space and joint scenes only if it ran to its end.
     fn observe(self, run: &Run<'_>) -> Result<(), ReadError> {
         match self {
             Observable::Slow(experiment) => {
@@ -170,7 +170,7 @@ impl Observable {
     }
 }
 
-/// What is done of a file besides what it asks for.
+/// What is done for a file besides what it asks for.
 struct Measured {
     trade: bool,
     derivatives: bool,
@@ -189,10 +189,10 @@ fn names_something(system: &System) -> bool {
 /// Whether a file claims what a rank is at all states, `rank = 6 except where g = 0`.
 fn speaks_of_all_states(system: &System) -> bool {
     let statements = system.claims.iter().flat_map(|claim| claim.body.statements());
-    let is_of_words = |expr: &Expr| matches!(&expr.kind, ExprKind::Name(name) if name == "rank");
+    let is_of_lie_derivatives = |expr: &Expr| matches!(&expr.kind, ExprKind::Name(name) if name == "rank");
     let is_one = |statement: &Statement| {
         let sides = [&statement.equation.left, &statement.equation.right];
-        statement.except.is_some() && sides.into_iter().any(is_of_words)
+        statement.except.is_some() && sides.into_iter().any(is_of_lie_derivatives)
     };
     statements.into_iter().any(is_one)
 }

@@ -30,7 +30,7 @@ pub struct SetRank {
 }
 
 impl SetRank {
-    /// What reports call it.
+    /// Its name in reports.
     pub fn name(&self) -> &str {
         self.set.as_ref().map_or("the whole sample box", |set| &set.name)
     }
@@ -39,7 +39,7 @@ impl SetRank {
     pub fn is_pole(&self) -> bool {
         match &self.found {
             Err(why) => matches!(why, RankError::Codistribution(CodistributionError::Pole { .. })),
-            // the words that were taken exist, and the fields do not
+            // the Lie derivatives that were taken exist, and the fields do not
             Ok(answer) => {
                 let left_out = |branch: &BranchAnswer| {
                     let SweepReport { samples, poles, interrupted, .. } = &branch.full;
@@ -50,7 +50,7 @@ impl SetRank {
         }
     }
 
-    /// The rank, or why there is none in words.
+    /// The rank, or as text why there is none.
     pub fn answer(&self) -> Result<&RankAnswer, String> {
         match &self.found {
             Err(why) => Err(why.to_string()),
@@ -122,8 +122,8 @@ pub(super) fn draw(
         && let Some(view) = map_by_default(system, observable)
         && let Ok(found) = map(system, own.as_deref(), &view, seed)
     {
-        // nobody has asked for it: what cannot be drawn is not missed, nor is one that tells nothing, as where values that are taken by
-        // default are special ones
+        // nobody has asked for it: what cannot be drawn is not missed, nor is a map without any finite number, as where values that are
+        // taken by default are special ones
         let tells =
             |(_, map): &(LandscapeRows, Map)| map.deviations.iter().flatten().any(|value| value.is_finite());
         if found.iter().any(tells) {
@@ -169,7 +169,7 @@ fn moving_unknowns(system: &System) -> Vec<Symbol> {
     system.states.iter().copied().filter(is_one).collect()
 }
 
-/// A map over the first two states, of the worst of them where all are observable, else of the first one that is.
+/// A map over the first two states: of the worst unknown where all are observable, else of the first that is observable.
 fn map_by_default(system: &System, observable: &[String]) -> Option<MapView> {
     if system.unknown_count() > MOST_UNKNOWNS || observable.is_empty() {
         return None;

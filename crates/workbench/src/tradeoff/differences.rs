@@ -1,6 +1,6 @@
 //! Lie derivatives by nested finite differences: what people bring along, as the bad example.
 //!
-//! `L_X F(q)` is `(F(q + e X(q)) - F(q)) / e` (forward) or `(F(q + e X(q)) - F(q - e X(q))) / 2e` (central), a word of
+//! `L_X F(q)` is `(F(q + e X(q)) - F(q)) / e` (forward) or `(F(q + e X(q)) - F(q - e X(q))) / 2e` (central), a Lie derivative along
 //! `k` fields is nested `k` deep, and its differential takes one difference more for each state: a derivative of order
 //! `n = k + 1` whose cost doubles with each field.
 //!
@@ -21,7 +21,7 @@ pub enum FiniteDifference {
 }
 
 impl FiniteDifference {
-    /// The step for a derivative of this order, in numbers that lie `spacing` apart at one.
+    /// The step for a derivative of this order, in numbers with the given spacing at one.
     pub fn step(self, spacing: f64, order: usize) -> f64 {
         let loss = if self == FiniteDifference::Forward { 1 } else { 2 };
         spacing.powf(1.0 / (order + loss) as f64)
@@ -41,7 +41,7 @@ fn size(value: f64) -> f64 {
 }
 
 impl<'p, T: RealNumber> Differences<'p, T> {
-    /// Differences of numbers that lie `spacing` apart at one.
+    /// Differences over numbers with the given spacing at one.
     ///
     /// # Errors
     /// Where a constant has no image.

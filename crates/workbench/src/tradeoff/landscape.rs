@@ -33,8 +33,8 @@ pub struct PictureRows {
 }
 
 impl PictureRows {
-    /// All Lie derivatives of a length, until the rank stops growing where none is given. Those that suffice at almost all states are not
-    /// enough for a picture: where they drop others may not.
+    /// All Lie derivatives up to an order, or where none is given until the rank stops growing. Those that suffice at almost all states are not
+    /// enough for a picture: where their rank drops others may raise it.
     ///
     /// # Errors
     /// Where there is no codistribution.
@@ -42,7 +42,7 @@ impl PictureRows {
         let length = order.map_or(Length::UntilItStops, Length::Exactly);
         let found = Codistribution::new(system, &Assignment::new(), length)?;
         Ok(PictureRows {
-            names: found.words.iter().map(|word| word.text(system)).collect(),
+            names: found.lie_derivatives.iter().map(|word| word.text(system)).collect(),
             measured: MeasuredRows { entries: found.entries(), values: Some(found.values) },
         })
     }
@@ -81,7 +81,7 @@ pub struct Map {
     /// How many rows it has.
     pub height: usize,
     /// By rows from the lowest `y`: the standard deviation over the prior one, of the unknown that is shown or of the worst; infinite
-    /// where it is not observable or where that cannot be told, `None` at a pole.
+    /// where it is not observable or where that cannot be decided, `None` at a pole.
     pub deviations: Vec<Option<f64>>,
     /// Of each cell which unknown is shown, by its place among all: the one that was asked for, or the worst; `None` at a pole.
     pub worst: Vec<Option<usize>>,
@@ -128,9 +128,8 @@ const SAMPLES: u64 = 1000;
 const SEED: u64 = 1;
 
 impl<'s> Landscape<'s> {
-    /// The rows at the given values; what is not given has the file's value, or the middle of its range, be it the one that is taken where the
-    /// file gives none. The scales are those of the
-    /// file's sample box, wherever is looked.
+    /// The rows at the given values; a symbol without one has the file's value, or the middle of its range, which may be a default range.
+    /// The scales are those of the file's sample box, wherever the rows are evaluated.
     ///
     /// # Errors
     /// A name that is not known, or a sample box in which no state is found.
@@ -201,7 +200,7 @@ impl<'s> Landscape<'s> {
                 let (middles, errors): (Vec<f64>, Vec<f64>) = all.iter().map(|v| (v.mid(), v.rad())).unzip();
                 Some([matrix(&middles), matrix(&errors)])
             }
-            // next to a pole nothing is known of the errors, so that nothing is told
+            // next to a pole no bound on the errors is known, so that nothing is observable for certain
             None => Some([matrix(&found), matrix(&vec![f64::INFINITY; found.len()])]),
         }
     }
@@ -221,8 +220,8 @@ impl<'s> Landscape<'s> {
         Some(self.scales.deviations(&entries, Some(&errors)))
     }
 
-    /// The same with enclosures, which have their digits next to singular sets and poles, where doubles may have none and not know it. What is infinite then is not
-    /// observable there, or not told by these either.
+    /// The same with enclosures, which keep their digits next to singular sets and poles, where doubles may lose theirs unnoticed.
+    /// An unknown with an infinite result is not observable there, or the enclosures cannot decide it either.
     fn precise_deviations(&self, values: &HashMap<Symbol, f64>) -> Deviations {
         let mut found = self.deviations(values)?;
         if let Some(enclosed) = self.enclosed_deviations(values) {
@@ -345,8 +344,8 @@ impl<'s> Landscape<'s> {
     }
 }
 
-/// How well each unknown of a system is observable at states of one's own, by all its Lie derivatives of up to `order` fields: the numbers of
-/// its maps. A state is the values of `names`; `at` holds other symbols fixed. With the names of the unknowns, in the order of the numbers.
+/// How well each unknown of a system is observable at states of one's own, by all its Lie derivatives up to `order`: the numbers of
+/// its maps. A state is the values of `names`; `at` fixes other symbols. Also returns the names of the unknowns, in the order of the numbers.
 ///
 /// # Errors
 /// A name that is not known, no codistribution, or a sample box in which no state is found.

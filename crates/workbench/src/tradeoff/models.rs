@@ -4,7 +4,7 @@ use palmistry_lang::{Assignment, Role, System};
 use palmistry_math::expression::{NodeId, Program, expand_angles};
 use palmistry_math::number::Floats;
 use palmistry_rank::observability::{
-    Branch, Codistribution, Length, Locus, Reduction, State, Word, parse_condition, singular_values,
+    Branch, Codistribution, Length, LieDerivative, Locus, Reduction, State, parse_condition, singular_values,
     solve_conditions,
 };
 use std::collections::BTreeMap;
@@ -126,8 +126,8 @@ fn counterparts(small: &mut System, large: &mut System) -> Result<(Vec<NodeId>, 
     for output in large.outputs.clone() {
         rows.extend(large.differential(output.1));
     }
-    let longer = |word: &&Word| !word.fields.is_empty();
-    for word in words.needed.iter().map(|index| &words.words[*index]).filter(longer) {
+    let longer = |word: &&LieDerivative| !word.fields.is_empty();
+    for word in words.needed.iter().map(|index| &words.lie_derivatives[*index]).filter(longer) {
         let output = &small.outputs[word.output].0;
         let place = large.outputs.iter().position(|(name, _)| name == output);
         let mut value = large.outputs[place.ok_or_else(|| format!("no output {output}"))?].1;

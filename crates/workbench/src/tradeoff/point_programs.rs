@@ -61,7 +61,7 @@ impl PointPrograms {
         &self.symbols
     }
 
-    /// The places of the unknown states in a point, in their order: what is differentiated by.
+    /// The places of the unknown states in a point, in their order: the variables of differentiation.
     pub fn states(&self) -> &[usize] {
         &self.states
     }

@@ -15,7 +15,7 @@ use std::collections::HashMap;
 pub struct PrintedValue {
     /// The entry that it belongs to.
     pub id: String,
-    /// The point, in the words of the file.
+    /// The point, as the file writes it.
     pub point: String,
     /// As printed.
     pub printed: String,
@@ -42,7 +42,7 @@ pub struct PrintedExpression {
     pub values: Vec<PrintedValue>,
 }
 
-/// A formula multiplied out, in words.
+/// A formula multiplied out, as text.
 #[derive(Clone, Debug)]
 pub struct ExpandedText {
     /// The number of monomials of the numerator.
@@ -60,7 +60,7 @@ const ORDERS: u64 = 400;
 /// The digits that are certified.
 const CERTIFIED_DIGITS: usize = 40;
 
-/// A statement about a number in print, taken apart.
+/// The parts of a statement about a number in print.
 struct Print<'a> {
     id: &'a str,
     formula: &'a Expr,

@@ -5,7 +5,7 @@ use palmistry_lang::{Assignment, System};
 use palmistry_math::expression::{NodeId, Program, Symbol};
 use palmistry_math::number::Floats;
 use palmistry_rank::observability::{
-    Branch, Codistribution, Length, Locus, Word, float_inputs, lie_derivative_by_duals,
+    Branch, Codistribution, Length, LieDerivative, Locus, float_inputs, lie_derivative_by_duals,
     lie_derivative_by_series,
 };
 use std::collections::{BTreeMap, HashMap};
@@ -13,18 +13,18 @@ use std::collections::{BTreeMap, HashMap};
 /// How far three ways to the same Lie derivatives agree.
 #[derive(Clone, Debug)]
 pub struct WaysAgreement {
-    /// The fields along which is differentiated, in the order of the file.
+    /// The fields along which outputs are differentiated, in the order of the file.
     pub fields: Vec<String>,
-    /// How many Lie derivatives of outputs, those that the codistribution takes.
+    /// How many Lie derivatives of outputs the codistribution takes.
     pub derivatives: usize,
-    /// Those that are too long to be compared.
+    /// How many of them are too long to be compared.
     pub too_long: usize,
-    /// How often the longest is differentiated.
+    /// The highest order of these Lie derivatives.
     pub order: usize,
-    /// At how many states of the sample box each.
+    /// The number of states of the sample box at which each is compared.
     pub states: usize,
-    /// The largest difference of duals and of series from the graph, relative to the largest number on the graph's way to the derivative at these states: what rounding is
-    /// measured by, also where the derivative itself vanishes.
+    /// The largest difference of duals and of series from the graph, relative to the largest intermediate number of the graph's
+    /// derivative at these states: a measure of rounding that holds also where the derivative itself vanishes.
     pub largest: [f64; 2],
 }
 
@@ -58,7 +58,8 @@ pub fn compare_ways(system: &System, seed: u64) -> Result<Option<WaysAgreement>,
     let mut system = system.clone();
     let words = Codistribution::new(&mut system, &Assignment::new(), Length::UntilItStops)
         .map_err(|why| why.to_string())?;
-    let taken: Vec<Word> = words.words.iter().filter(|word| !word.fields.is_empty()).cloned().collect();
+    let taken: Vec<LieDerivative> =
+        words.lie_derivatives.iter().filter(|word| !word.fields.is_empty()).cloned().collect();
     let (mut kept, mut programs, mut values) = (Vec::new(), Vec::new(), Vec::new());
     for word in taken.iter().take(MOST) {
         let output = system.outputs[word.output].1;

@@ -61,7 +61,7 @@ impl MovingScene {
             }
             let swings: &[Oscillation] = match &self.drive {
                 Drive::Prescribed(courses) => {
-                    // a palm that is told how to move may weigh nothing
+                    // a palm whose motion is prescribed may weigh nothing
                     let usable = inertia >= 0.0 && inertia.is_finite();
                     is(usable, &of("moment of inertia"), inertia, "finite and not negative")?;
                     finite(&of("start angle"), courses[i].start)?;

@@ -6,7 +6,7 @@
 //! joint; the normal turns at `a = w + k s'` with the palm's curvature `k` (`w - k s'` on palm 2, whose body is on the other
 //! side), and the body's point moves over the body by its radius of curvature, `X' = omega0 JX + v (a - omega0) Ju`, `u` the
 //! outward normal. Both contacts give one velocity: two linear equations for `s_1'` and `s_2'`. Once more differentiated, and
-//! seen along `u`, what nobody knows (`s''`, `v'`) drops out:
+//! projected on `u`, the unknown `s''` and `v'` drop out:
 //!
 //! ```text
 //! u · c'' = A u · Jp - w^2 u · p -+ 2 w s' - k s'^2 + alpha0 h' + omega0^2 h + v (a - omega0)(a + omega0)

@@ -1,4 +1,4 @@
-//! What moves the palms: angles that are told, or torques.
+//! What moves the palms: prescribed angles, or torques.
 
 use serde::Deserialize;
 use std::f64::consts::TAU;
@@ -23,7 +23,7 @@ impl Oscillation {
     }
 }
 
-/// An angle that is told for all times: `start + rate t` and oscillations, in radians and seconds. A phase that is
+/// An angle that is prescribed for all times: `start + rate t` and oscillations, in radians and seconds. A phase that is
 /// not zero moves the angle at time zero away from `start`. What is not given is zero.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -69,9 +69,9 @@ impl PushedPalm {
 /// What moves the palms. Palm 1's angle is against the X axis, palm 2's against palm 1.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Drive {
-    /// The angles are told; contact forces and motor torques are results.
+    /// The angles are prescribed; contact forces and motor torques are results.
     Prescribed([Course; 2]),
-    /// The torques are told; the palms' angles are results as well. Both motors stand on the ground: what one of them
+    /// The torques are prescribed; the palms' angles are results as well. Both motors stand on the ground: what one of them
     /// exerts on its palm is not taken from the other palm (equations 4.7 and 4.8).
     Torques([PushedPalm; 2]),
 }

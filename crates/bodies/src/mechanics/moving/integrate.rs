@@ -1,7 +1,7 @@
 //! The one place that knows the integrator: Dop853 of the crate ode_solvers (Hairer, Nørsett and Wanner, Solving
 //! Ordinary Differential Equations I, 1993, section II.10), asked for its own steps and nothing between them.
 //!
-//! In version 0.6.2 of the crate the twelfth stage of a step is computed with the time of its beginning instead of its
+//! In version 0.6.2 of the crate the twelfth stage of a step is computed with the time of its start instead of its
 //! end (`c_12` is 0; it has to be 1, the sum of its row; pull request 42). A system whose rates do not depend on the
 //! time is not affected. So the time is integrated along with the state, and the solver's own time is not used.
 
@@ -12,7 +12,7 @@ use ode_solvers::{Dop853, OutputType, SVector, System};
 /// Steps between two samples, refused ones included, after which an integration is given up.
 const MOST_STEPS: u32 = 20_000;
 
-/// Rates of `M` numbers, of which the last is the time since the beginning.
+/// Rates of `M` numbers, of which the last is the time since the start.
 struct Laws<F>(F);
 
 impl<const M: usize, F: Fn(&[f64; M]) -> [f64; M]> System<f64, SVector<f64, M>> for Laws<F> {

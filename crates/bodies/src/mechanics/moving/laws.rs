@@ -24,7 +24,7 @@ use crate::mechanics::palm::Palm;
 use std::f64::consts::FRAC_PI_2;
 
 /// What is integrated: `phi0`, `omega0`, `phi1`, `omega1`, `phi2`, `omega2` (these four stay as they are where the
-/// palms' angles are told) and the work done by the motors.
+/// palms' angles are prescribed) and the work done by the motors.
 pub(super) type State = [f64; 7];
 
 /// A state at a time.
@@ -39,7 +39,7 @@ pub(super) struct TimedState {
 /// whose determinant falls with the square of the sine, so that half of their digits are lost there.
 const PARALLEL: f64 = 1e-4;
 
-/// All that is known at one moment. Palms are seen from the world here: both angles, rates and accelerations are
+/// All that is known at one moment. Palms are in the world's frame here: both angles, rates and accelerations are
 /// against the X axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Situation {
@@ -113,7 +113,7 @@ impl MovingScene {
         state
     }
 
-    /// Angle, rate and, where it is told, acceleration of both palms against the X axis.
+    /// Angle, rate and, where it is prescribed, acceleration of both palms against the X axis.
     pub(super) fn palms_at(&self, time: f64, state: &State) -> [[f64; 3]; 2] {
         let own: [[f64; 3]; 2] = match &self.drive {
             Drive::Prescribed(courses) => [courses[0].at(time), courses[1].at(time)],
@@ -122,7 +122,7 @@ impl MovingScene {
         [own[0], std::array::from_fn(|k| own[0][k] + own[1][k])]
     }
 
-    /// The palms' accelerations and the motors' torques, by the palms' own law: one of the two is told.
+    /// The palms' accelerations and the motors' torques, by the palms' own law: one of the two is prescribed.
     pub(super) fn accelerations_and_torques(
         &self,
         time: f64,

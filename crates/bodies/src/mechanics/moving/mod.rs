@@ -1,12 +1,12 @@
 //! Planar bodies in motion, in double precision: a smooth convex body that slides between two palms through
 //! time.
 //!
-//! A `BodyForm` says how a body looks, a `Shape` is the body once it has been seen to be strictly convex: its
+//! A `BodyForm` says how a body looks, a `Shape` is the body once it is shown to be strictly convex: its
 //! support function about the centre of mass, area, perimeter, radius of gyration. A `MovingScene` adds masses,
-//! gravity, a start and a `Drive`, which either tells the palms how to move or what torques to feel;
+//! gravity, a start and a `Drive`, which prescribes either the palms' motion or their torques;
 //! `simulate` then gives a `Trajectory`, what sensors and motors would report at given times, and how it ended, [`Ended`].
 //!
-//! As the rest of this floor it stays ignorant: it imports numbers only and reads no proof file. What it knows
+//! As the rest of this floor it is independent: it imports numbers only and reads no proof file. What it knows
 //! are the geometry of support functions, Newton's and Euler's laws and that a contact stays a contact. In
 //! particular no equation of the thesis for how `s`, `r` or `d` change is used, so that a motion can be held
 //! against them. The bodies in 320 bits beside it obey the same laws by differences, and are

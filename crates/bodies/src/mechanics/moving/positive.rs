@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-/// Where a function of an angle is not positive, or cannot be seen to be.
+/// Where a function of an angle is not positive, or cannot be shown to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Doubt {
     /// It is negative or zero here.
@@ -11,7 +11,7 @@ pub(super) enum Doubt {
     Undecided { angle: f64, value: f64 },
 }
 
-/// Intervals at the beginning.
+/// Intervals at the start.
 const PIECES: u32 = 64;
 /// An interval is halved this often before it is given up.
 const DEPTH: u32 = 40;

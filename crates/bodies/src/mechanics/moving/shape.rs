@@ -137,7 +137,7 @@ impl Shape {
         h + second
     }
 
-    /// The greatest radius of curvature, in metres, of as many points as tell it to a thousandth and more.
+    /// The greatest radius of curvature, in metres, over so many points that it is good to a thousandth and better.
     pub fn greatest_radius_of_curvature(&self) -> f64 {
         const DIRECTIONS: u32 = 8192;
         let at = |i: u32| self.radius_of_curvature(TAU * f64::from(i) / f64::from(DIRECTIONS));

@@ -7,7 +7,7 @@ use super::scene::{MovingScene, SceneError};
 use super::trajectory::{Ended, Moment, Trajectory};
 use palmistry_io::foreign::{Allowance, Budget};
 
-/// The end of a contact is sought until it is known to so many seconds.
+/// The end of a contact is located to so many seconds.
 pub(super) const LOCATED: f64 = 1e-14;
 
 /// The last of sample times that are finite, not negative and increase.

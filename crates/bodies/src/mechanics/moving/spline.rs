@@ -81,7 +81,7 @@ impl ClosedSpline {
     ///
     /// The turning `x' × x''` of a cubic `c0 + c1 t + c2 t^2 + c3 t^3` is `2 c1×c2 + 6 c1×c3 t + 6 c2×c3 t^2`: the
     /// cubic term vanishes. Its least value on `[0, 1]` is at an end or at the vertex. The direction of a quadratic
-    /// `x'` turns by less than a full turn, so that its ends tell by how much.
+    /// `x'` turns by less than a full turn, so that its ends determine by how much.
     fn check(&self) -> Result<(), FormError> {
         let mut turned = 0.0;
         for (i, piece) in self.pieces.iter().enumerate() {
@@ -277,7 +277,7 @@ mod tests {
             let angle = f64::from(k) * 0.0628 + 0.0123;
             let [before, [_, slope, second], after] = [-step, 0.0, step].map(|e| spline.support(angle + e));
             assert!((slope - (after[0] - before[0]) / (2.0 * step)).abs() < 1e-8);
-            // a kink of h'' within the step leaves its jump in slope times the step
+            // a kink of h'' within the step adds its jump in slope times the step
             assert!((second - (after[1] - before[1]) / (2.0 * step)).abs() < 1e-3, "{angle}");
         }
     }

@@ -11,7 +11,7 @@ pub struct PalmMoment {
     pub angle: f64,
     pub rate: f64,
     pub acceleration: f64,
-    /// The distance of the contact from the origin, what the sensor reads.
+    /// The distance of the contact from the origin, which the sensor measures.
     pub s: f64,
     /// The projection of the contact, in the body's frame, on the outward normal there.
     pub r: f64,
@@ -22,7 +22,7 @@ pub struct PalmMoment {
     /// The motor's torque about the origin, counterclockwise.
     pub torque: f64,
     /// Friction on the body, and how fast the body slides there, both along the palm's tangent as the thesis turns it: away from the
-    /// origin on palm 1, towards it on palm 2. Zero where a motion knows no friction.
+    /// origin on palm 1, towards it on palm 2. Zero in a motion without friction.
     pub friction: f64,
     pub slip: f64,
 }
@@ -119,7 +119,7 @@ impl Ended {
     }
 }
 
-/// In words, after "the motion".
+/// As text, after "the motion".
 impl std::fmt::Display for Ended {
     fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {

@@ -16,7 +16,7 @@ const LOCATED: f64 = 1e-13;
 /// In one step the body turns by no more than this, in radians: where it does, the step is halved.
 const NEAR: f64 = 0.02;
 
-/// A turn at a fold is a jump from here on, in radians; shorter ones cannot be told from the quick motion at the fold.
+/// A turn at a fold is a jump from here on, in radians; shorter ones cannot be distinguished from the quick motion at the fold.
 const LEAST_JUMP: f64 = 1e-3;
 
 /// Palms count as parallel where the sine of the angle between them is below this.

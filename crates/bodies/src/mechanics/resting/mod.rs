@@ -8,9 +8,9 @@
 //! U = (A r_1 + B r_2)/sin phi2,    A = sin(phi1 + phi2),  B = sin phi1
 //! ```
 //!
-//! with the radii `r_i` at the outward normals `phi1 - phi0 - pi/2` and `phi1 + phi2 - phi0 - 3 pi/2`. `A/sin phi2` and `B/sin phi2` are the contact forces in parts of
-//! the weight, so that both are positive where palms push. [`stable_poses`] finds every minimum over the turn, [`descend`] the one that a released body
-//! comes to, [`follow_resting`] carries a body along while palms move, through folds (equation 3.43 of the thesis) and jumps.
+//! with the radii `r_i` at the outward normals `phi1 - phi0 - pi/2` and `phi1 + phi2 - phi0 - 3 pi/2`. `A/sin phi2` and `B/sin phi2` are the contact forces
+//! relative to the weight, so that both are positive where palms push. [`stable_poses`] finds every minimum over the turn, [`descend`] the one that a released
+//! body comes to, [`follow_resting`] carries a body along while palms move, through folds (equation 3.43 of the thesis) and jumps.
 //!
 //! As the rest of this floor it knows numbers only, and nothing of how `s`, `r` and `d` move. The bodies in 320 bits ([`lowest_pose`](super::lowest_pose)), which rest by
 //! differences of heights, are the witness in tests, and so is a polygon laid between two lines.

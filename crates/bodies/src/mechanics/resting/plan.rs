@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI, TAU};
 /// The corners are rounded by the mean over a normal distribution of this standard deviation, in rounds.
 const ROUNDING: f64 = 0.03;
 
-/// Of what the rounding leaves, so many oscillations are taken: the next would be below 1e-14 rad.
+/// So many oscillations of the rounded corners are taken: the next would be below 1e-14 rad.
 const OSCILLATIONS: u32 = 64;
 
 /// Why there is no such plan.

@@ -81,7 +81,7 @@ fn cut(at: &dyn Fn(f64) -> [f64; 2], a: Node, b: Node) -> ([Node; 3], usize) {
         } else {
             high = phi0;
         }
-        // what is sought is the value at the extremum: it is flat there
+        // only the value at the extremum is needed: it is flat there
         if (high - low).abs() < 1e-9 {
             break;
         }

@@ -4,7 +4,7 @@ use crate::mechanics::moving::Shape;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::{Add, Mul};
 
-/// A body as this module sees it. Closures from an angle to `[h, h', h'']` are bodies, too.
+/// A body as this module needs it. Closures from an angle to `[h, h', h'']` are bodies, too.
 pub trait ConvexBody: Sync {
     /// The support function about the centre of mass and its first two derivatives, `[h, h', h'']` in metres, at the outward normal with this angle in the
     /// body's frame, in radians. It has the period of a turn, and `h + h''` is positive.
@@ -104,10 +104,10 @@ pub fn potential<B: ConvexBody + ?Sized>(body: &B, phi0: f64, palms: [f64; 2]) -
     (first + second) * Potential::of(cosecant, [0.0, 0.0, 1.0])
 }
 
-/// What is seen of a body that touches both palms.
+/// The contacts of a body that touches both palms, its centre of mass and the contact forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestingContacts {
-    /// The distances of the contacts from the joint along the palms: what the sensors read, in metres.
+    /// The distances of the contacts from the joint along the palms: what the sensors measure, in metres.
     pub s: [f64; 2],
     /// The support radii at the contacts.
     pub r: [f64; 2],
@@ -115,7 +115,7 @@ pub struct RestingContacts {
     pub d: [f64; 2],
     /// The centre of mass in the world.
     pub centre: [f64; 2],
-    /// The contact forces that carry the weight, in parts of it; a torque about the centre of mass is left unless the pose is in equilibrium.
+    /// The contact forces that carry the weight, relative to it; their torque about the centre of mass is not zero unless the pose is in equilibrium.
     pub forces: [f64; 2],
 }
 

@@ -74,7 +74,7 @@ pub fn balanced_orientation(scene: &SpatialScene) -> Result<Option<Orientation>,
         for _ in 0..60 {
             let next = turned(&step);
             let (lower, its_moment) = potential(scene, &next);
-            // near the minimum heights round, and moments tell
+            // near the minimum heights are lost in rounding, and moments decide
             if lower < height
                 || (lower - height).abs() < 1e-14 * weight * size && its_moment.norm() < moment.norm()
             {

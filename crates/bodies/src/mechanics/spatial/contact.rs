@@ -10,7 +10,7 @@
 //! spheres that bulge towards the body (`k > 0`), for hollow ones (`k < 0`) and for planes, so that nothing is lost where `k` is small.
 //!
 //! Contact with all palms, `c + X_i = t_i + ...` with the boundary point `X` whose outward normal is `-N`, are nine equations for the centre
-//! of mass `c` and three contacts `d`. Newton's method takes them apart: where `H` holds the second derivatives of the support function, changes leave
+//! of mass `c` and three contacts `d`. Newton's method decouples them: where `H` holds the second derivatives of the support function, changes obey
 //!
 //! ```text
 //! dc + left = (1 + k H) (dd1 a' + dd2 b'),      N . dc = -N . left,
@@ -31,13 +31,13 @@ const SETTLED: [f64; 2] = [1e-14, 1e-9];
 const BENDINGS: [u32; 4] = [1, 4, 16, 64];
 /// No step goes beyond this part of a sphere's radius from the axis through its point of contact with the plane.
 const RIM: f64 = 0.999_9;
-/// Where planes have no point in common contacts are sought first at this part of the radius, towards the middle of the palms.
+/// Where planes have no point in common contacts are searched for first at this part of the radius, towards the middle of the palms.
 const LEANING: f64 = 0.7;
 
 /// A volume of three unit normals below which their palms are taken to have a line in common.
 pub(super) const FLAT: f64 = 1e-6;
 
-/// What is told by orientation and palms alone.
+/// What follows from orientation and palms alone.
 #[derive(Clone, Debug)]
 pub(super) struct Contacts {
     /// Axis, direction up the palm and normal of each palm's plane, as columns.
@@ -50,7 +50,7 @@ pub(super) struct Contacts {
     /// What `N . c` is.
     pub reaches: [f64; 3],
     /// Where the contacts are from where spheres touch their planes, along the hinges and up the palms; zero where all palms are flat. None where no contacts were found, each on the half of its
-    /// sphere that the palm's coordinates tell.
+    /// sphere that the palm's coordinates describe.
     pub places: Option<Places>,
 }
 
@@ -91,7 +91,7 @@ impl Sphere {
 }
 
 impl Contacts {
-    /// Contacts next to those at some places, or where nothing is known of these those that are found from flat palms.
+    /// Contacts next to those at some places, or where none are given those that are found from flat palms.
     pub fn of(scene: &SpatialScene, angles: [f64; 3], turn: &Matrix3<f64>, near: Option<Places>) -> Contacts {
         let frames: [Matrix3<f64>; 3] =
             std::array::from_fn(|i| palm_frame(scene.palms[i].azimuth, angles[i]));

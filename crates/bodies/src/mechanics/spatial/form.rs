@@ -11,7 +11,7 @@ pub enum SolidForm {
     /// `(sum |a_i n_i|^p)^(1/p) + rounding`, `p` the even exponent: the body `sum |x_i/a_i|^q <= 1` with `1/p + 1/q = 1`, to which
     /// a ball of the radius `rounding` is added (Minkowski). For `p > 2` the first has edges, which the ball rounds off.
     Superellipsoid { semi_axes: [f64; 3], exponent: u32, rounding: f64 },
-    /// `mean + sum c x^i y^j z^k`, polynomials of the direction. Those of the first degree move the body and leave its form.
+    /// `mean + sum c x^i y^j z^k`, polynomials of the direction. Those of the first degree move the body and keep its form.
     Harmonics { mean: f64, terms: Vec<Harmonic> },
     /// The sum of bodies, each taken so many times (Minkowski): support functions add up.
     Blend(Vec<(f64, SolidForm)>),

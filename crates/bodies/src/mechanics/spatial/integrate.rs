@@ -1,6 +1,6 @@
 //! The integrator: Dop853 of the crate ode_solvers, in pieces short enough that a rotation vector serves in each.
 //!
-//! Within a piece the body is turned by its orientation at the beginning and then by a rotation vector, which is integrated like
+//! Within a piece the body is turned by its orientation at the start and then by a rotation vector, which is integrated like
 //! all else and so is under the same control of errors (H. Munthe-Kaas, Runge-Kutta methods on Lie groups, BIT 38, 1998). The time
 //! goes along as a coordinate: version 0.6.2 of the crate has a wrong node for rates that depend on it.
 
@@ -24,12 +24,12 @@ pub(super) struct TimedState {
     pub near: Option<Places>,
 }
 
-/// A rotation vector, the rate, angles and rates of the palms, work, the time since the beginning.
+/// A rotation vector, the rate, angles and rates of the palms, work, the time since the start.
 type Vector = SVector<f64, 14>;
 
 /// Steps within a piece, refused ones included, after which an integration is given up.
 const MOST_STEPS: u32 = 20_000;
-/// A piece is as long as the body takes to turn by this, in radians, at the rate at its beginning.
+/// A piece is as long as the body takes to turn by this, in radians, at the rate at its start.
 const TURN_OF_A_PIECE: f64 = 0.5;
 /// And on spheres no longer than so many of the longest steps.
 const STEPS_ON_SPHERES: f64 = 8.0;
@@ -111,7 +111,7 @@ pub(super) fn steps(
         let turning = here.rate.norm();
         let mut most = TURN_OF_A_PIECE / turning;
         if !is_flat {
-            // contacts are sought from those at the beginning of a piece
+            // contacts are searched for from those at the start of a piece
             here.near = here.situation(scene).touched;
             most = most.min(STEPS_ON_SPHERES * longest);
         }

@@ -62,7 +62,7 @@ pub(super) struct Situation {
 
 impl Situation {
     /// What holds where the body is turned so, turns at a rate, and pushed palms have these angles and rates. Not finite where the
-    /// palms' normals lie in one plane. On spheres contacts are sought near some places, if they are known.
+    /// palms' normals lie in one plane. On spheres contacts are searched for near some places, if they are known.
     pub fn at(
         scene: &SpatialScene,
         time: f64,

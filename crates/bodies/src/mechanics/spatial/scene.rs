@@ -32,9 +32,9 @@ impl SpatialPalm {
 /// What moves the palms. Angles are those from the horizontal to the palm, positive where it rises.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpatialDrive {
-    /// The angles are told; contact forces and motor torques are results.
+    /// The angles are prescribed; contact forces and motor torques are results.
     Prescribed([Course; 3]),
-    /// The torques about the hinges are told; the palms' angles are results as well.
+    /// The torques about the hinges are prescribed; the palms' angles are results as well.
     Torques([PushedPalm; 3]),
 }
 

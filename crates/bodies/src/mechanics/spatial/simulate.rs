@@ -13,7 +13,7 @@ pub struct SpatialPalmMoment {
     pub angle: f64,
     pub rate: f64,
     pub acceleration: f64,
-    /// Where the contact is on the palm: along the hinge and up the palm, from the hinge's point. What the sensor reads.
+    /// Where the contact is on the palm: along the hinge and up the palm, from the hinge's point. What the sensor measures.
     pub sensed: [f64; 2],
     /// The palm's normal at the contact in the world, towards the body.
     pub normal: Vector3<f64>,
@@ -128,7 +128,7 @@ impl SpatialTrajectory {
 /// What a motion may cost: steps of the integrator.
 const ALLOWANCE: Allowance = Allowance { bytes: u64::MAX, nodes: u64::MAX, steps: 50_000 };
 
-/// The end of a contact is sought until it is known to so many seconds.
+/// The end of a contact is located to so many seconds.
 const LOCATED: f64 = 1e-12;
 
 /// Moves the scene from time zero and reports its moments at the sample times, which increase.

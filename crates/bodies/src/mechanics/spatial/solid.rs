@@ -1,4 +1,4 @@
-//! A convex body in space that has been seen to be one, about its centre of mass.
+//! A convex body in space that is shown to be one, about its centre of mass.
 
 use super::curvature::{greater_tangential, greatest_radius};
 use super::form::{SolidForm, Support};
@@ -19,13 +19,13 @@ pub enum SolidFormError {
     /// There is nothing to add up.
     #[error("a blend has no parts; give at least one")]
     Nothing,
-    /// A radius of curvature is not positive, or cannot be seen to be.
+    /// A radius of curvature is not positive, or cannot be shown to be.
     #[error(
         "the body cannot be shown to be strictly convex: where the outward normal is ({x:.4}, {y:.4}, {z:.4}) the least radius of \
          curvature is no more than {radius:.4e} m for certain; make the harmonics smaller"
     )]
     NotConvex { x: f64, y: f64, z: f64, radius: f64 },
-    /// The centre of mass lies outside, or cannot be seen to lie inside.
+    /// The centre of mass lies outside, or cannot be shown to lie inside.
     #[error(
         "the centre of mass cannot be shown to lie inside the body: in the direction ({x:.4}, {y:.4}, {z:.4}) it reaches \
          {extent:.4e} m from it"
@@ -173,7 +173,7 @@ fn check(form: &SolidForm) -> Result<(), SolidFormError> {
 /// those of the polynomials change with the direction at most, and how far it reaches at most.
 ///
 /// The radii of curvature of an ellipsoid lie above `min a_i^2 / max a_i`; edges have none, so that the ball that rounds them
-/// is what is left. On the unit sphere no `j`-th derivative of a monomial of degree `k` is greater than `k (k - 1) ...`, with `j`
+/// remains. On the unit sphere no `j`-th derivative of a monomial of degree `k` is greater than `k (k - 1) ...`, with `j`
 /// factors, and those of `|n|^m` are no greater than `|m|`, `|m| (|m| + 1)` and `|m| (|m| + 2) max(3, |m| + 1)`.
 fn bounds(form: &SolidForm, times: f64) -> [f64; 3] {
     let extremes = |axes: &[f64; 3]| axes.iter().fold((f64::MAX, 0f64), |(a, b), x| (a.min(*x), b.max(*x)));

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 
-/// Where a function of a direction is not positive, or cannot be seen to be.
+/// Where a function of a direction is not positive, or cannot be shown to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Doubt {
     pub direction: Vector3<f64>,
@@ -18,7 +18,7 @@ const MOST: usize = 4_000_000;
 /// Whether a function of unit vectors is positive everywhere, given that it changes by no more than `slope` times the angle, and
 /// that its computed values are off by no more than `rounding`.
 ///
-/// Directions are the points of a cube around the unit sphere. What a square of its faces is seen under is no wider than the square,
+/// Directions are the points of a cube around the unit sphere. The angle that a square of its faces subtends is no wider than the square,
 /// so a value above the slope times half its diagonal is a proof for all of it; other squares are quartered.
 pub(super) fn positive_everywhere(
     function: impl Fn(&Vector3<f64>) -> f64,

@@ -1,9 +1,9 @@
 //! What a convex body lies in where none of its radii of curvature is larger than a bound: the intersection of balls of that radius; and that of balls of several radii with
 //! half-spaces.
 //!
-//! The region is convex and is seen from a point inside. Over a triangle of directions it contains the tetrahedron whose corners are points inside of all balls, and it lies
-//! within the cone up to a tangent plane of any of them; both volumes are intervals rounded outward. The triangle with the largest difference is
-//! divided until what is left is small.
+//! The region is convex and is described from a point inside. Over a triangle of directions it contains the tetrahedron whose corners are points inside of all
+//! balls, and it lies within the cone up to a tangent plane of any of them; both volumes are intervals rounded outward. The triangle with the largest
+//! difference is divided until that is small.
 
 use super::bounds::{BoundedRegion, SurfaceTouch, TouchError, check, middle};
 use super::mesh::SurfaceMesh;
@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use palmistry_math::number::{Function, Interval};
 use std::collections::{BinaryHeap, HashMap};
 
-/// The volume is told to this part of itself, where that takes no more than so many triangles.
+/// The volume is enclosed to this part of itself, where that takes no more than so many triangles.
 const WIDTH: f64 = 1e-3;
 const MOST: usize = 60_000;
 
@@ -229,7 +229,7 @@ impl Seen {
             }
             reach *= 1.0 - shrink;
         }
-        // the point from which all is seen is inside
+        // the point about which the region is described is inside
         let reach = if inside(reach) { reach } else { 0.0 };
         self.corners.push(Corner { direction, reach });
         self.corners.len() - 1

@@ -3,13 +3,13 @@
 //! The body contains each contact, so that it contains their convex hull. At each contact it lies on one side of the tangent plane, so that it lies
 //! in the intersection of these half-spaces. In coordinates about a point inside, the half-space `n . x <= w` is the point `n/w`; the intersection is bounded where the hull of these points has
 //! the origin inside, its corners are then the hull's facets and its faces the hull's corners. All `w > 0` is not enough for that: the normals have to span all directions with positive factors. Where they do
-//! not there is a direction in which a body may be as long as one likes, and it is told.
+//! not there is a direction in which a body may be as long as one likes, and it is reported.
 //!
 //! Where every radius of curvature is known to be at least `a`, a ball of that radius rolls inside of the body, and balls that touch at the contacts take the place of points. Where none is larger than `b`,
 //! the body rolls inside a ball of the radius `b`, and balls take the place of half-spaces (W. Blaschke, Kreis und Kugel, 1916, section 24): also where the body was touched by the inside of
 //! spherical palms with a larger radius than any of its own.
 //!
-//! Contacts and normals are taken as they are given: of these numbers the bounds are certain. Errors that they have are for who gives them.
+//! Contacts and normals are taken as they are given: of these numbers the bounds are certain. Their errors are a matter for the caller.
 
 use super::hull::{Flat, Hull};
 use super::mesh::SurfaceMesh;
@@ -45,7 +45,7 @@ pub struct BoundedRegion {
 pub enum OuterBound {
     /// A bounded region.
     Bounded(BoundedRegion),
-    /// All tangent planes leave it free to reach as far as one likes in this direction, a unit vector in the body's frame.
+    /// The tangent planes do not bound it: it may reach as far as one likes in this direction, a unit vector in the body's frame.
     Unbounded {
         /// No normal has a positive product with it; that was decided before it was rounded.
         direction: Vector3<f64>,
@@ -249,7 +249,7 @@ fn about_inside(touches: &[SurfaceTouch]) -> Result<(Vector3<f64>, Vec<Point>), 
     let size = touches.iter().map(|touch| (touch.point - own).norm()).fold(0.0, f64::max);
     let under = own - outward * if size > 0.0 { size } else { 1.0 };
     half_spaces(touches, &own).map(|points| (own, points)).or_else(|error| {
-        // what was told of the middle stands where there is nothing under it either
+        // the error about the middle is reported where the point below fails too
         half_spaces(touches, &under).map(|points| (under, points)).map_err(|_| error)
     })
 }

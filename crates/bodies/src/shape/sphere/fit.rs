@@ -22,7 +22,7 @@ pub struct SolidSample {
 }
 
 impl SolidSample {
-    /// What a contact tells.
+    /// The sample of a contact.
     pub fn of(touch: &SurfaceTouch, weight: f64) -> SolidSample {
         SolidSample { normal: touch.normal, radius: touch.normal.dot(&touch.point), weight }
     }
@@ -35,7 +35,7 @@ pub struct SolidEstimate {
     pub support: SphereSeries,
     /// Of the coefficients, in m^2.
     pub covariance: DMatrix<f64>,
-    /// The sum of the squares of what is left, in units of the samples' variances.
+    /// The sum of the squared residuals, in units of the samples' variances.
     pub chi_square: f64,
     /// Samples less unknowns; at least one.
     pub degrees: usize,
@@ -48,7 +48,7 @@ const MOST_DEGREE: usize = 12;
 const ROWS: usize = 512;
 
 /// The support function that explains samples best; of the degree that is given, or of the one up to 12 with the least criterion of G. Schwarz (1978). Samples without a
-/// positive finite weight do not count; none where no other is left, or they tell no positive mean radius.
+/// positive finite weight do not count; none where no other is left, or they determine no positive mean radius.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -154,7 +154,7 @@ impl SolidEstimate {
     }
 
     /// From where to where the support radius can be at a unit vector, in m: no less than the body's inner bound reaches, no more than its outer bound, where there is one, and two
-    /// standard deviations about those. Where the body was touched both are near, and elsewhere no sample tells more than they do.
+    /// standard deviations about those. Where the body was touched both are near, and elsewhere no sample says more than they do.
     pub fn band(&self, n: &Vector3<f64>, inner: &BoundedRegion, outer: Option<&BoundedRegion>) -> [f64; 2] {
         let reach = |region: &BoundedRegion| {
             region.surface.corners.iter().map(|corner| corner.dot(n)).fold(f64::NEG_INFINITY, f64::max)

@@ -6,7 +6,7 @@ use num_dual::{DualNum, hessian};
 /// A support function about a point in m, `h(n) = sum c_lm Y_lm(n)` for unit vectors `n`, with harmonics whose squares have the mean one over the sphere.
 ///
 /// Coefficients are those of degree 0, of degree 1, and so on; within a degree `l` the order is `m = 0`, then cosine and sine of `m = 1` up to `m = l`. Those of degree one move the
-/// body and leave its form.
+/// body and keep its form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SphereSeries {
     /// `(degree + 1)^2` of them, in m.

@@ -1,7 +1,7 @@
 //! The convex hull of points in space, by exact signs: the algorithm of C. Barber, D. Dobkin and H. Huhdanpaa, The quickhull algorithm for convex hulls,
 //! ACM Transactions on Mathematical Software 22, 1996.
 //!
-//! Facets are triangles; where more than three points lie in one plane they are several in that plane. Only what is strictly beyond a facet sees it, so that
+//! Facets are triangles; where more than three points lie in one plane they are several in that plane. A facet is visible only from strictly beyond it, so that
 //! no facet is ever a line. A point is beyond a facet where the determinant of the point and the facet's corners, counterclockwise, is positive. [`Hull::is_proved`] looks at the result without knowing how it was found.
 //!
 //! Why no crate: hulls in doubles of nearly coplanar contacts do not always pass that look, and half-spaces are points whose quotients no double holds.
@@ -162,7 +162,7 @@ fn share_out(points: &[Point], facets: &mut [Facet], first: usize, left: Vec<usi
     }
 }
 
-/// Takes away the facets that a point is strictly beyond, one of which is told, and puts a cone from it in their place. What is left are the
+/// Takes away the facets that a point is strictly beyond, one of which is given, and puts a cone from it in their place. Returned are the
 /// points that those had.
 fn attach(points: &[Point], facets: &mut Vec<Facet>, from: usize, point: usize) -> Vec<usize> {
     let mut left = Vec::new();

@@ -44,7 +44,7 @@ impl SurfaceMesh {
         text
     }
 
-    /// The volume within, as doubles tell it, in m^3.
+    /// The volume within, computed in doubles, in m^3.
     pub fn volume(&self) -> f64 {
         let fan = |polygon: &Vec<usize>| -> f64 {
             let Some((&first, rest)) = polygon.split_first() else { return 0.0 };

@@ -10,7 +10,8 @@ use palmistry_math::number::{Function, Interval, RealNumber};
 use std::collections::BTreeMap;
 
 /// What the body contains where none of its radii of curvature is less than `least`: the hull of the balls of that radius that touch at the contacts. Its volume is
-/// that of the hull of the centres, with area times radius, edges' lengths times outer angles times half of the radius' square, and a ball (J. Steiner, 1840). The surface told is that of the hull of the centres.
+/// that of the hull of the centres, with area times radius, edges' lengths times outer angles times half of the radius' square, and a ball (J. Steiner, 1840).
+/// The surface that is given is that of the hull of the centres.
 ///
 /// # Errors
 /// Where a contact or the radius cannot be used.

@@ -42,7 +42,7 @@ fn rounded(rows: [&Point; 4]) -> (f64, f64) {
     (sum, ROUNDING * size + UNDERFLOW)
 }
 
-/// The determinant of four points as rows, as doubles tell it: a measure of distance for points beside one plane.
+/// The determinant of four points as rows, computed in doubles: a measure of distance for points beside one plane.
 pub(super) fn about(rows: [&Point; 4]) -> f64 {
     rounded(rows).0
 }

@@ -120,7 +120,7 @@ fn an_ellipsoid_lies_between_its_bounds() {
     }
 }
 
-/// Balls leave less than half-spaces where the body bends, and the more the nearer their radius is to its own.
+/// The intersection of balls is smaller than that of half-spaces where the body bends, and the smaller the nearer their radius is to its own.
 #[test]
 fn balls_leave_less_than_half_spaces() {
     let truth = 4.0 / 3.0 * PI * 5.0;
@@ -143,7 +143,7 @@ fn balls_leave_less_than_half_spaces() {
     assert!(found.contains(volume) && found.width() < 1.1e-3 * volume, "{found} {volume}");
 }
 
-/// A ball that a plane cuts: a cap by Archimedes, `pi h^2 (3 r - h)/3`; and a half-space alone leaves what is unbounded.
+/// A ball that a plane cuts: a cap by Archimedes, `pi h^2 (3 r - h)/3`; and a half-space alone is unbounded.
 #[test]
 fn a_ball_and_a_half_space_leave_a_cap() {
     let at = |z: f64, side: f64| SurfaceTouch { point: Vector3::z() * z, normal: Vector3::z() * side };
@@ -274,7 +274,7 @@ fn harmonics_are_orthonormal_and_give_points() {
     }
 }
 
-/// Of what harmonics can say nothing is lost; of an ellipsoid what is beyond them is small; and the band holds the truth where nothing was touched.
+/// A body of harmonics is recovered whole; of an ellipsoid what is beyond them is small; and the band holds the truth where nothing was touched.
 #[test]
 fn a_fit_finds_the_body() {
     let coefficients: Vec<f64> =

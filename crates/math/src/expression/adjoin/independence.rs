@@ -9,7 +9,7 @@
 //! of the symbols as are not yet sums of these and constants. All that was named lies in a field that is made, up to algebraic
 //! functions, of the symbols and of one function for each of the others. So there are as many independent functions as there are
 //! generators: these satisfy no equation on any component of the domain. To be shown is that no sum of rational multiples of the
-//! `y` is constant: real and imaginary ones apart, that no combination of their differentials vanishes. Differentials are
+//! `y` is constant: separately for real and imaginary ones, that no combination of their differentials vanishes. Differentials are
 //! rational in generators that come before, so that it may be shown over generators, at random points modulo one prime: what is
 //! independent there is independent.
 //!
@@ -33,7 +33,7 @@ pub(super) struct Standing {
     pub independent: bool,
     /// At most one constant is no algebraic number.
     pub constants_known: bool,
-    /// What an absolute value is taken of whose sign is not known, and other forms whose signs tell roots apart.
+    /// Arguments of absolute values whose signs are not known, and other forms whose signs distinguish roots.
     pub open: Vec<Form>,
 }
 
@@ -158,7 +158,7 @@ impl Adjunction<'_> {
         inner.iter().filter(|v| !varying.contains(v)).count()
     }
 
-    /// The differentials of the `y`, real and imaginary ones apart; whether these are shown to be independent.
+    /// The differentials of the `y`, separately for real and imaginary ones; whether these are shown to be independent.
     fn differentials_are_independent(&mut self, varying: &BTreeSet<u32>) -> Option<bool> {
         let symbols: Vec<u32> = varying.iter().copied().filter(|v| self.given_symbol(*v).is_some()).collect();
         let (mut real, mut imaginary) = (Vec::new(), Vec::new());
@@ -204,7 +204,7 @@ impl Adjunction<'_> {
         if !self.roots_below(&nodes).is_empty() || self.generators.turn.minimal.len() > 1 {
             return false;
         }
-        // a constant that is drawn anew at each point would tell apart what differs by its root alone
+        // a constant that is drawn anew at each point would distinguish what differs by its root alone
         if radicands.iter().flat_map(Form::variables).any(|variable| !self.varies(variable)) {
             return false;
         }

@@ -58,12 +58,12 @@ pub enum Related {
         points: usize,
         /// The bound on the degree.
         degree: f64,
-        /// What was used, in words.
+        /// The relations that were used, as text.
         used: String,
     },
-    /// Nothing is shown; why, in words.
+    /// Nothing is shown; the reason, as text.
     NotShown(String),
-    /// No function is met of which there would be something to know.
+    /// The expressions contain no function with relations.
     NoFunctions,
 }
 

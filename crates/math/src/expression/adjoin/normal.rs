@@ -15,9 +15,9 @@ pub struct NormalForm {
     /// Whether the functions that are no constants are shown to satisfy no equation but the known ones, on any component of the
     /// domain.
     pub independent: bool,
-    /// Whether nothing is left to know of constants either: at most one of them is no algebraic number.
+    /// Whether all relations between constants are known too: at most one of them is no algebraic number.
     pub constants_known: bool,
-    /// What has an absolute value whose sign is not known, and other expressions whose signs tell roots apart.
+    /// Arguments of absolute values whose signs are not known, and other expressions whose signs distinguish roots.
     pub open_signs: Vec<NodeId>,
 }
 

@@ -24,7 +24,7 @@ pub struct GeneratorPoints {
     /// Whether the generators that are no constants are shown to satisfy no equation but the known ones, on any component of
     /// the domain.
     pub independent: bool,
-    /// Whether nothing is left to know of its constants either: at most one of them is no algebraic number.
+    /// Whether all relations between its constants are known too: at most one of them is no algebraic number.
     pub constants_known: bool,
     /// Expressions that are known up to their sign only, each of them nowhere zero where everything has derivatives.
     pub open_signs: Vec<NodeId>,

@@ -211,7 +211,7 @@ impl Adjunction<'_> {
     /// The value of a form in which only constants are met.
     ///
     /// # Errors
-    /// Where something else is met, or the value cannot be told from undefined.
+    /// Where something else is met, or the value cannot be distinguished from undefined.
     pub(super) fn enclosed(&self, form: &Form, bits: usize) -> Result<Enclosure, Refusal> {
         let numbers = Enclosures::new(bits);
         let mut sum = numbers.rational(&RBig::ZERO)?;

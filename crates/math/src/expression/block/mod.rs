@@ -61,7 +61,7 @@ impl BlockProgram {
         BlockProgram { tape, inputs: flat.inputs, undefined: operations.undefined }
     }
 
-    /// What has to be given, in this order.
+    /// The inputs, in the order in which they are given.
     pub fn inputs(&self) -> &[Input] {
         &self.inputs
     }

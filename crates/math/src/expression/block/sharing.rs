@@ -114,7 +114,7 @@ fn share(products: &mut [FactorPowers]) -> Vec<Pair> {
     pairs
 }
 
-/// Multiplies out what is left of a product: neighbours first, so that the chain is short.
+/// Multiplies out the rest of a product: neighbours first, so that the chain is short.
 fn finish(product: &FactorPowers, pairs: &mut Vec<Pair>) -> Option<Factor> {
     let mut left: Vec<Factor> =
         product.iter().flat_map(|(factor, count)| (0..*count).map(|_| *factor)).collect();

@@ -66,7 +66,7 @@ fn at_the_place(before: &str, rest: &str) -> Option<String> {
         is_more.then(|| "this bracket closes none: each ')' needs its '('".to_owned())
     };
     let found = AT_THE_PLACE.iter().find_map(fixed).or_else(|| decimal_comma(line, rest));
-    found.or_else(closes).or_else(|| of_words(line, rest)).or_else(comma)
+    found.or_else(closes).or_else(|| of_lie_derivatives(line, rest)).or_else(comma)
 }
 
 fn is_function(name: &str) -> bool {
@@ -80,7 +80,7 @@ fn decimal_comma(line: &str, rest: &str) -> Option<String> {
 }
 
 /// By the words of the line as far as the place.
-fn of_words(line: &str, rest: &str) -> Option<String> {
+fn of_lie_derivatives(line: &str, rest: &str) -> Option<String> {
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let words: Vec<&str> = line.split(|c| !is_word(c)).filter(|word| !word.is_empty()).collect();
     let at_word: String = rest.chars().take_while(|c| is_word(*c)).collect();
@@ -226,7 +226,7 @@ fn of_a_rate(before: &str, rest: &str) -> Option<String> {
             false if left.is_empty() => "a product is written with '*'".to_owned(),
             false => format!("a product is written with '*', as in {left}*{name}"),
         };
-        return of_words(line, name).or(Some(help));
+        return of_lie_derivatives(line, name).or(Some(help));
     }
     let dotted = name.strip_suffix("_dot").or_else(|| name.strip_suffix("dot"));
     let derived = match (name, rest) {

@@ -9,7 +9,7 @@ use super::{cut_err, opt, read_all, sum};
 use crate::expression::syntax::{Equation, Expr, ExprKind, Indexed, Loop, Name, Place, Span, Whole};
 use dashu::rational::RBig;
 use std::cell::Cell;
-use winnow::combinator::{alt, preceded, repeat as many};
+use winnow::combinator::{alt, peek, preceded, repeat as many};
 use winnow::error::ErrMode;
 use winnow::prelude::*;
 use winnow::stream::Location;
@@ -447,7 +447,22 @@ pub fn target(input: &mut Text<'_>) -> Read<Target> {
 /// may stand apart. Or a target and the sign of a step, `x+`: whether it is that.
 pub fn moved(input: &mut Text<'_>) -> Read<(Target, bool)> {
     let mut found = located_target(input)?;
-    if opt((blank, sign("+"))).parse_next(input)?.is_some() {
+    let step = |input: &mut Text<'_>| -> Read<usize> {
+        blank(input)?;
+        let at = input.current_token_start();
+        literal("+").void().parse_next(input)?;
+        Ok(at)
+    };
+    if let Some(at) = opt(step).parse_next(input)? {
+        if opt(peek(literal("="))).parse_next(input)?.is_some() {
+            let what = "'+ =' with a blank between, or a rate";
+            let name = &found.name;
+            let help = format!(
+                "'+=' adds elsewhere: the value after a step is {name}+ = v, and what adds v is {name}+ = {name} + v"
+            );
+            return stop(at, what, Some(help));
+        }
+        blank(input)?;
         return Ok((found, true));
     }
     let suffix = found.suffix.clone();

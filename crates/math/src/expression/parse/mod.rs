@@ -19,7 +19,7 @@ use winnow::combinator::{alt, cut_err, not, opt, preceded, separated};
 use winnow::error::ErrMode;
 use winnow::prelude::*;
 use winnow::stream::{LocatingSlice, Location, Stateful};
-use winnow::token::{one_of, take_while};
+use winnow::token::{literal, one_of, take_while};
 
 /// The greatest exponent that may be written after `^`.
 const LARGEST_EXPONENT: i32 = 1000;
@@ -36,12 +36,22 @@ fn matrix(input: &mut Text<'_>) -> Read<Expr> {
     let begin = input.current_token_start();
     sign("[").parse_next(input)?;
     let row = |input: &mut Text<'_>| -> Read<Vec<Expr>> {
+        input.state.in_row.set(true);
         separated(1.., sum, sign(",")).map(spread).parse_next(input)
     };
     let rows: Vec<Vec<Expr>> = within(input, cut_err(separated(1.., row, sign(";"))))?;
     let end = cut_err(closing("]"))
         .context("']', ',' between the entries of a row, or ';' between rows")
         .parse_next(input)?;
+    // elsewhere this is a matrix of two rows, and here it would be one long row
+    let is_row = |entry: &Expr| matches!(&entry.kind, ExprKind::Matrix(inner) if inner.len() == 1);
+    if let [row] = rows.as_slice()
+        && row.len() > 1
+        && row.iter().all(is_row)
+    {
+        let help = "rows have ';' between them, as in [a, b; c, d]; entries of one row stand in one pair of brackets";
+        return stop(begin, "a matrix, with ';' between its rows", Some(help.to_owned()));
+    }
     Ok(Expr { kind: ExprKind::Matrix(rows), span: begin..end })
 }
 
@@ -193,10 +203,22 @@ fn product(input: &mut Text<'_>) -> Read<(bool, Expr)> {
 pub fn sum(input: &mut Text<'_>) -> Read<Expr> {
     let begin = input.current_token_start();
     let first = product(input)?;
+    let mut end = first.1.span.end;
     let mut terms = vec![first];
-    while let Some(minus) = opt(alt((sign("+").value(false), sign("-").value(true)))).parse_next(input)? {
+    loop {
+        let at = input.current_token_start();
+        let joins = alt((literal("+").value(false), literal("-").value(true)));
+        let Some(minus) = opt(joins).parse_next(input)? else { break };
+        // `[1 -2]` is a difference here, and two entries elsewhere
+        let joined = input.current_token_start();
+        blank(input)?;
+        if input.state.in_row.get() && end < at && input.current_token_start() == joined {
+            let help = "entries have ',' between them, as in [1, -2]; a difference has a blank on either side of its sign, or none";
+            return stop(at, "',' or ']'", Some(help.to_owned()));
+        }
         let begin = input.current_token_start();
         let (negative, value) = cut_err(product).parse_next(input)?;
+        end = value.span.end;
         terms.push((minus, signed(negative, begin, value)));
     }
     if terms.len() == 1 {

@@ -18,6 +18,8 @@ pub type Text<'a> = Stateful<LocatingSlice<&'a str>, &'a Depth>;
 pub struct Depth {
     /// How many brackets are open.
     pub(super) open: Cell<usize>,
+    /// Whether the innermost open bracket is that of a matrix.
+    pub(super) in_row: Cell<bool>,
     /// How many parts of expressions were written out for values of indices.
     pub(super) written_out: Cell<usize>,
     /// The indices that were met, where each gets its range.
@@ -324,8 +326,10 @@ pub fn within<'a, T>(input: &mut Text<'a>, inner: impl Parser<Text<'a>, T, ErrMo
         );
     }
     depth.open.set(depth.open.get() + 1);
+    let in_row = depth.in_row.replace(false);
     let mut inner = inner;
     let result = inner.parse_next(input);
+    depth.in_row.set(in_row);
     depth.open.set(depth.open.get() - 1);
     result
 }

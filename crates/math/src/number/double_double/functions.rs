@@ -1,7 +1,7 @@
 //! Elementary functions of double-doubles, each right to 2^-100 of its value.
 //!
-//! All go the same way: the argument is brought near a point at which the function is tabulated, and what is left
-//! over goes into a short Taylor series, whose higher terms need no more than a double. With `u = 2^-53` and the
+//! All go the same way: the argument is brought near a point at which the function is tabulated, and the rest
+//! goes into a short Taylor series, whose higher terms need no more than a double. With `u = 2^-53` and the
 //! errors of the operations as in the parent module (sum `3u^2`, product `7u^2`, quotient `15u^2`, times a double
 //! `2u^2`, root `4u^2`; a tabulated constant `u^2`), the relative errors are counted at each function, for the argument
 //! where they are greatest. Terms of the order `u^3`, and truncated series, add less than `u^2/2` each.

@@ -1,7 +1,7 @@
 //! Angles reduced to a few degrees by fixed-point arithmetic, right for every double-double (M. H. Payne, R. N. Hanek,
 //! *Radian reduction for trigonometric functions*, SIGNUM Newsletter 18 (1983)).
 //!
-//! A double is a whole number `m` times `2^e`. Of `m * 2^e * 2/pi`, in right angles, only what is left after whole
+//! A double is a whole number `m` times `2^e`. Of `m * 2^e * 2/pi`, in right angles, only the rest after whole
 //! turns is wanted: modulo four, and down to `2^-254`. So only 256 bits of `2/pi` matter, from a place that depends
 //! on `e`, and 64 more to guard the product. No double-double below `2^1024` lies nearer to a multiple of a right
 //! angle than about `2^-120` of one (a probabilistic count: there are `2^118` of them; the tests try the worst

@@ -1,5 +1,5 @@
-//! Outputs that are zero, `0 = y(x, u)`: they tie known signals to states. What is seen of a state is then what the rows of `y`,
-//! `y'`, ... say at points where all of these vanish.
+//! Outputs that are zero, `0 = y(x, u)`: they tie known signals to states. Whether a state is observable is then decided by the rows of `y`, `y'`,
+//! ... at points where all of these vanish.
 //!
 //! Each `y^(j) = 0` is solved for a coordinate in which it is linear. For `j > 0` it is so in the highest derivative of a
 //! signal, with the slope that `y` itself has; where that slope does not vanish (at almost all points of a set that has one part)
@@ -32,7 +32,7 @@ struct Tied {
 }
 
 impl Branch {
-    /// The part of the branch on which the outputs that are zero vanish, with as many derivatives as give all those of signals that words mention.
+    /// The part of the branch on which the outputs that are zero vanish, with as many derivatives as give all those of signals that Lie derivatives mention.
     ///
     /// # Errors
     /// Where one of them vanishes nowhere, is linear in no coordinate, or vanishes in more than one way, and where the last derivatives of signals are not
@@ -47,7 +47,7 @@ impl Branch {
             self.steps.push(quote(system, zero, *node));
         }
         let drift = system.drift();
-        let words = system.longest_word().unwrap_or(0);
+        let words = system.highest_lie_order().unwrap_or(0);
         let reach = highest_in_words(system);
         let tied = |node: &NodeId| {
             let own = highest_derivative(system, std::iter::once(*node));
@@ -59,7 +59,7 @@ impl Branch {
             for tied in current.iter_mut().filter(|tied| !tied.is_last) {
                 tied.solved = self.meet(system, tied.node, order, tied.solved)?;
                 let mentioned = system.graph.symbols_of([tied.node]);
-                // where there are symbols for more derivatives, and no rows for them, these are given too as long as that costs little: the set is one that no field leaves then
+                // symbols for more derivatives, for which there are no rows, are given too as long as that costs little: the set is then invariant
                 let is_long = || system.graph.reachable([tied.node]).len() > SHORT;
                 tied.is_last = mentioned.iter().any(|symbol| system.is_cut_off(*symbol))
                     || order >= tied.most && (order >= tied.most + MOST_MORE || is_long());
@@ -94,7 +94,7 @@ impl Branch {
             || highest.all(|symbol| self.values.contains_key(symbol))
     }
 
-    /// Meets one more equation, a derivative of an output, and tells what it was solved for. `before` is what the derivative before
+    /// Meets one more equation, a derivative of an output, and returns what it was solved for. `before` is what the derivative before
     /// it was.
     fn meet(
         &mut self,

@@ -1,7 +1,7 @@
 //! Conditions such as `omega1 = 0`, `sin(phi1) = 0` or the vanishing of a determinant, solved for one symbol each, so
 //! that states which meet them can be written down exactly.
 //!
-//! The set of states that meet all conditions is taken apart into branches. On each one some symbols have values in terms of
+//! The set of states that meet all conditions is divided into branches. On each one some symbols have values in terms of
 //! the others, valid where the branch's guards hold: `a x + b = 0` is met by `x = -b/a` where `a` is not zero, and where `a`
 //! and `b` both vanish, which is another branch. Every branch is followed to its end: solved, proved empty, or given back as
 //! what could not be solved. Of `k` conditions no part of the set that is a part of its own has less than the dimension
@@ -179,7 +179,7 @@ enum Step {
     Stuck(Partial, Unsolved),
 }
 
-/// Takes the set on which all conditions hold apart into branches and solves each, for a statement about those of its states at which some
+/// Divides the set on which all conditions hold into branches and solves each, for a statement about those of its states at which some
 /// guards hold: what they keep from zero can be divided by, and parts that are thinner than the set are followed only where they may hold.
 ///
 /// # Errors
@@ -279,7 +279,7 @@ fn begin(system: &mut System, conditions: &[Equation]) -> Result<Partial, Unsolv
     Ok(partial)
 }
 
-/// What an inequality needs: the greater side less the other one is positive, or not negative. `None` of an equation.
+/// What an inequality needs: the greater side less the other one is positive, or not negative. `None` for an equation.
 pub fn assumed(graph: &mut Graph, relation: Relation, left: NodeId, right: NodeId) -> Option<Guard> {
     let (more, less) = if relation.points_up() { (right, left) } else { (left, right) };
     let need = match relation {
@@ -385,7 +385,7 @@ fn step(system: &mut System, mut partial: Partial, count: usize) -> Step {
             let why = Unsolved::NotKnown(condition.text.clone());
             return Step::Stuck(Partial { open, ..partial }, why);
         }
-        // an angle that is known up to whole turns, and was not put in: the condition tells these apart
+        // an angle that is known up to whole turns, and was not put in: the condition distinguishes these
         let mentioned = system.graph.symbols_of([condition.left, condition.right]);
         let way = match partial.turns.iter().any(|(angle, _)| mentioned.contains(angle)) {
             true => way_apart_from_turns(system, condition.left, condition.right, &guards),

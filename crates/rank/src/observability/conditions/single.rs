@@ -1,5 +1,5 @@
 //! One condition, solved: for a name, for a symbol in which it is linear, for an angle whose sine or cosine is known, or
-//! taken apart into its factors.
+//! split into its factors.
 
 use super::circular::circular;
 use super::sampled::{changes_its_sign, has_both_signs};
@@ -151,7 +151,7 @@ fn whole_factors(system: &System, expression: NodeId) -> Vec<NodeId> {
     found
 }
 
-/// Whether signs tell that `left = right` is met nowhere.
+/// Whether signs show that `left = right` is met nowhere.
 pub(super) fn is_nowhere_zero(system: &mut System, left: NodeId, right: NodeId, guards: &[Guard]) -> bool {
     let difference = system.graph.sub(left, right);
     let is_angle = system.angle_test();

@@ -1,4 +1,4 @@
-//! Whole turns: `sin(phi) = 0` fixes an angle up to multiples of two pi, and what tells these apart cannot be decided by one
+//! Whole turns: `sin(phi) = 0` fixes an angle up to multiples of two pi, and what distinguishes these cannot be decided at one
 //! of them.
 
 use super::{Branch, all_vanish};
@@ -7,7 +7,7 @@ use palmistry_math::expression::{Input, NodeId, Program, Symbol, expand_angles};
 use palmistry_math::number::Function;
 
 impl Branch {
-    /// Refuses a codistribution that tells apart what the conditions leave open; see [`Branch::put_in`].
+    /// Refuses a codistribution that distinguishes what the conditions leave open; see [`Branch::put_in`].
     ///
     /// # Errors
     /// In words: which angle is known up to whole turns only.
@@ -22,7 +22,7 @@ impl Branch {
     /// The expressions on the branch: its values put in.
     ///
     /// # Errors
-    /// Where an expression tells apart values that the conditions leave open, all that differ by whole turns; in words:
+    /// Where an expression distinguishes values, apart by whole turns, that the conditions leave open; in words:
     /// which angle is known up to whole turns only.
     pub fn put_in(&self, system: &mut System, expressions: &[NodeId]) -> Result<Vec<NodeId>, String> {
         let before = system.graph.substitute(expressions, &self.before_turns);

@@ -1,5 +1,5 @@
 //! What is asked of an expression while conditions are solved: whether it is zero, identically, as numbers or as a constant,
-//! and whether derivatives tell all of it.
+//! and whether it is determined by its derivatives.
 
 use palmistry_lang::System;
 use palmistry_math::expression::{
@@ -10,7 +10,7 @@ use palmistry_math::number::{Enclosure, Enclosures};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// The precision at which a constant is told from zero.
+/// The precision at which a constant is distinguished from zero.
 const CONSTANT_BITS: usize = 512;
 
 /// Whether an expression is identically zero, by exact arithmetic at random points.
@@ -69,7 +69,7 @@ pub(super) fn vanishes_as_numbers(system: &System, expression: NodeId) -> bool {
     matches!(test, ZeroTest::Zero { .. })
 }
 
-/// Whether a symbol stands inside no function's argument, so that derivatives by it tell all of it.
+/// Whether a symbol stands inside no function's argument, so that derivatives by it determine the dependence.
 pub(super) fn inside_no_function(system: &System, expression: NodeId, symbol: Symbol) -> bool {
     let arguments: Vec<NodeId> = system
         .graph

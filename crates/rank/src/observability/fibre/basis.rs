@@ -20,7 +20,7 @@ pub(super) struct Row {
 /// Why there is no basis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stop {
-    /// Whoever waits does so no longer.
+    /// It was interrupted, or its work is used up.
     TimeIsUp,
     /// A matrix of so many columns.
     TooWide(usize),

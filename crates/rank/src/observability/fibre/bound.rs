@@ -1,6 +1,6 @@
 //! How likely it is that a random point modulo a random prime shows fewer values than there are.
 //!
-//! Let `y_1 ... y_n` be derivatives of outputs whose differentials are independent in the `n` unknowns that are not held. On the states
+//! Let `y_1 ... y_n` be derivatives of outputs whose differentials are independent in the `n` unknowns that are not fixed. On the states
 //! over which they are `N/R^m`, pairs of points with the same outputs are the zeros of `G_j = N_j(a) R(b)^m - N_j(b) R(a)^m`.
 //! Let two points with the same outputs,
 //! at almost all `a`, differ in the value that is asked for. Then there is a variety `C` of such pairs over the rationals whose
@@ -15,7 +15,7 @@
 //! vanishes. That so and so many values are met and no more is shown in the same way: of the polynomial whose roots are the values,
 //! of degree `D`, neither the leading coefficient nor the discriminant may vanish.
 //!
-//! Nothing of it depends on how many derivatives were taken: those that are left out can only tell more values apart.
+//! Nothing of it depends on how many derivatives were taken: those that are left out can only distinguish more values.
 //!
 //! The coefficients are bounded by the arithmetic theorem of Bezout (T. Krick, L. M. Pardo and M. Sombra, *Sharp estimates for the
 //! arithmetic Nullstellensatz*, Duke Math. J. 109 (2001), corollary 2.11), with twice as much room for the logarithms of the

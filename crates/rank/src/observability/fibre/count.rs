@@ -27,7 +27,8 @@ pub(super) fn count(
     let probe = Probe::new(system, &question.conditions);
     let orders = match model.is_on_a_set() {
         true => {
-            // an order at which nothing is added is no last one on a set that the fields leave; what tells all locally may not tell all values apart
+            // on a set that is not invariant an order that adds nothing need not be the last; what determines all locally may not distinguish all
+            // values
             answer.orders_are_open = true;
             let told = orders_on_orbits(system, &question.conditions, &mut rng);
             probe.orders_on_a_set(told.as_deref(), &mut rng)?

@@ -26,7 +26,7 @@ const MOST: usize = 64;
 const MOST_STEPS: usize = 2_000;
 
 impl Exchange {
-    /// Whether it leaves everything where it is.
+    /// Whether it is the identity.
     fn is_nothing(&self) -> bool {
         self.of.iter().enumerate().all(|(place, (other, turned))| place == *other && !turned)
     }
@@ -161,7 +161,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Colours that tell variables apart which stand in different terms.
+    /// Colours that distinguish variables which stand in different terms.
     fn refine(&self, mut colours: Vec<u64>) -> Vec<u64> {
         let mut count = 0;
         loop {

@@ -2,12 +2,11 @@
 //!
 //! The outputs of almost every state, as functions of time and of known inputs, are met by the states and constants of a
 //! *fibre*. At a random point modulo a random prime
-//! its equations are written down: `Q x' = P` and the outputs, differentiated along time as often as tells all or some times more ([`round`]),
-//! with the derivatives of the outputs that the point has. Unknowns that are not even locally determined are held as far as
-//! that makes the fibre finite, which leaves the number of values of
-//! the others what it is. What can be solved is solved ([`eliminate`]), of the rest a Groebner basis is found ([`basis`]), and
-//! each unknown's minimal polynomial in the quotient
-//! algebra ([`quotient`]): the number of its distinct roots is that of the values, over the complex numbers.
+//! its equations are written down: `Q x' = P` and the outputs, differentiated along time as often as determines all, or some times more
+//! ([`round`]), with the derivatives of the outputs that the point has. Unknowns that are not even locally identifiable are fixed as far as
+//! needed to make the fibre finite, which does not change the number of values of the others. What can be solved is solved ([`eliminate`]), of
+//! the rest a Groebner basis is found ([`basis`]), and each unknown's minimal polynomial in the quotient algebra ([`quotient`]): the number of
+//! its distinct roots is that of the values, over the complex numbers.
 //!
 //! That there are no more values than were met is as certain as [`bound`] says, and for small systems that is beyond doubt. That there
 //! are as many is shown by a symmetry ([`discrete`]), or computed.
@@ -64,9 +63,9 @@ pub enum Solutions {
 pub struct SolutionsOf {
     /// Its name, or the expression.
     pub name: String,
-    /// What it is; nothing of an expression.
+    /// What it is; none for an expression.
     pub kind: Option<UnknownKind>,
-    /// Whether it is seen locally.
+    /// Whether it is locally observable.
     pub local: Observability,
     /// The probability of an error in that, as a power of two.
     pub local_error: f64,
@@ -79,7 +78,7 @@ pub struct SolutionsOf {
 }
 
 impl SolutionsOf {
-    /// What is proved: that there are so many values and no more, or infinitely many.
+    /// Whether it is proved that there are so many values and no more, or infinitely many.
     pub fn is_proved(&self) -> bool {
         match self.solutions {
             Solutions::Infinite => true,
@@ -110,25 +109,25 @@ pub struct SolutionsAnswer {
     pub rounds: usize,
     /// How many derivatives of each output were taken.
     pub orders: Vec<usize>,
-    /// How many states and constants give the same outputs, those held that are not locally seen.
+    /// How many states and constants give the same outputs, with those fixed that are not locally observable.
     pub points: Option<usize>,
     /// How much work it was, in products of residues.
     pub work: u64,
     /// Two points with the same outputs, in exact numbers, where there are just two and no symmetry shows it.
     pub second: Option<SecondPoint>,
-    /// Whether values at the beginning are given, so that further derivatives might tell more.
+    /// Whether initial conditions are given, so that further derivatives might be informative.
     pub orders_are_open: bool,
 }
 
 /// What is asked.
 pub struct SolutionsQuestion<'a> {
-    /// What is fixed or given at the beginning.
+    /// Fixed values and given initial conditions.
     pub conditions: Assignment,
     /// Expressions beside the unknowns.
     pub expressions: Vec<(String, NodeId)>,
     /// How much work may be done, in products of residues.
     pub work: u64,
-    /// Set by whoever does not wait any longer.
+    /// Set from outside to stop early.
     pub interrupt: &'a AtomicBool,
 }
 
@@ -146,8 +145,8 @@ pub fn solutions(
     solutions_telling(system, question, &mut |_| ())
 }
 
-/// The same; what is known before anything is counted is told as soon as it is: which unknowns have infinitely many values, then what
-/// symmetries show.
+/// The same; `known` is called with what is known before anything is counted: which unknowns have infinitely many values, then what symmetries
+/// show.
 ///
 /// # Errors
 /// As for [`solutions`].
@@ -216,11 +215,11 @@ pub fn solutions_telling(
     Ok(answer)
 }
 
-/// What follows of each unknown from what is seen locally and from what was counted.
+/// What follows for each unknown from its local observability and from what was counted.
 fn conclude(answer: &mut SolutionsAnswer, counted: &Result<(), String>, generic: &GenericAnswer) {
     for of_it in &mut answer.unknowns {
         match (of_it.local, counted) {
-            // it is no bound on what is infinite that few were met where it was held
+            // that few values were met where it was fixed is no bound: there are infinitely many
             (Observability::No, _) => (of_it.solutions, of_it.at_most) = (Solutions::Infinite, None),
             (Observability::Undecided, _) => {
                 let why = generic
@@ -244,7 +243,7 @@ fn conclude(answer: &mut SolutionsAnswer, counted: &Result<(), String>, generic:
     }
 }
 
-/// Whether an expression is seen locally: where the rank stays what it is when it is an output.
+/// Whether an expression is locally observable: the rank stays what it is when it is an output.
 fn local_of(
     system: &System,
     conditions: &Assignment,

@@ -26,7 +26,7 @@ pub(super) enum Motion {
     Rests,
     /// By this rate.
     Moves(Quotient),
-    /// As somebody wants it to, who knows it.
+    /// It is a known signal, and moves freely.
     Driven,
 }
 
@@ -35,7 +35,7 @@ pub(super) enum Motion {
 pub(super) struct Variable {
     pub input: Input,
     pub motion: Motion,
-    /// Whether its value at the beginning is known.
+    /// Whether its initial condition is known.
     pub is_known: bool,
 }
 
@@ -49,12 +49,12 @@ pub(super) struct Model {
     pub asked: Vec<Quotient>,
     /// The unknowns in the order of the file, with the places of their variables: one, or cosine and sine of an angle.
     pub unknowns: Vec<(Symbol, Vec<usize>)>,
-    /// The values at the beginning that the file gives, as programs of known parameters.
+    /// The initial conditions that the file gives, as expressions of known parameters.
     pub given: Vec<(usize, NodeId)>,
     pub angles: HashSet<Symbol>,
     /// The rates and the outputs as expressions.
     pub rates: Vec<(Symbol, NodeId)>,
-    pub seen: Vec<NodeId>,
+    pub measured: Vec<NodeId>,
 }
 
 impl Model {
@@ -66,7 +66,7 @@ impl Model {
         if system.time == Time::Discrete {
             return Err("the values of an unknown are counted in continuous time alone, and this system goes in steps".to_owned());
         }
-        if !system.zero_outputs().is_empty() || system.longest_word().is_some() {
+        if !system.zero_outputs().is_empty() || system.highest_lie_order().is_some() {
             return Err("outputs that are zero tie known signals to states, of which values are not counted"
                 .to_owned());
         }
@@ -180,10 +180,20 @@ impl Model {
             of_it.iter().filter_map(|input| place.get(input).copied()).collect()
         };
         let unknowns = system.unknowns().into_iter().map(|symbol| (symbol, places(symbol))).collect();
-        Ok(Model { graph, variables, outputs, asked, unknowns, given, angles, rates: expressions, seen })
+        Ok(Model {
+            graph,
+            variables,
+            outputs,
+            asked,
+            unknowns,
+            given,
+            angles,
+            rates: expressions,
+            measured: seen,
+        })
     }
 
-    /// Whether values at the beginning are numbers or expressions, and not anything.
+    /// Whether initial conditions are given by numbers or expressions, and not free.
     pub fn is_on_a_set(&self) -> bool {
         !self.given.is_empty()
     }

@@ -1,4 +1,4 @@
-//! The equations of a fibre: all values of the unknowns at the beginning, and of all derivatives, for which the outputs have
+//! The equations of a fibre: all initial values of the unknowns, and values of all derivatives, for which the outputs have
 //! the derivatives
 //! that they have at one random point.
 
@@ -117,7 +117,7 @@ fn needed(model: &Model, orders: &Orders) -> Vec<Option<usize>> {
     needed
 }
 
-/// Where the unknowns that are free are held, which makes a fibre finite.
+/// Where the free unknowns are fixed, which makes a fibre finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Held {
     /// At the values that the point has.
@@ -127,7 +127,7 @@ pub(super) enum Held {
 }
 
 impl Fibre {
-    /// The fibre through a point, with the unknowns that are free held.
+    /// The fibre through a point, with the free unknowns fixed.
     pub fn new(
         model: &Model,
         orders: &Orders,
@@ -223,8 +223,8 @@ impl Fibre {
         Ok(fibre)
     }
 
-    /// What is known, what is held (at values of the point, but where others are given), that denominators do not vanish, that angles are
-    /// points of the circle; and what is asked.
+    /// What is known, what is fixed (at values of the point, but where others are given), that denominators do not vanish, that angles
+    /// are points of the circle; and what is asked.
     fn ties(
         &mut self,
         model: &Model,
@@ -297,7 +297,7 @@ impl Fibre {
         for equation in &mut self.equations {
             *equation = equation.with_values(&field, |jet| known.get(&jet).copied());
         }
-        // what is known is told by an equation too, so that whoever asks for it finds it
+        // what is known has an equation too, so that whoever asks for it finds it
         for (jet, value) in known {
             let mut equation = Jet::variable(&field, jet);
             equation.add_term(&field, Vec::new(), field.modulus() - value);
@@ -330,7 +330,7 @@ fn elsewhere(model: &Model, orders: &Orders, field: &PrimeField, source: &mut So
     values
 }
 
-/// Random values at the beginning, or those that the file gives.
+/// Random initial conditions, or those that the file gives.
 fn begin(model: &Model, field: PrimeField, source: &mut Source) -> Result<HashMap<u32, u64>, Trouble> {
     let mut values = HashMap::new();
     for (place, variable) in model.variables.iter().enumerate() {

@@ -38,7 +38,7 @@ pub(super) struct Round {
 /// One of the ways to a basis, none of which is the best one always.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Way {
-    /// So many derivatives of each output are taken beyond those that tell all. They add nothing to what is known, but with more equations
+    /// So many derivatives of each output are taken beyond those that determine all. They are uninformative, but with more equations
     /// than unknowns a basis is found at lower degrees: MAP kinases with five outputs take seconds with some more, and no time suffices
     /// without.
     pub further: usize,
@@ -180,13 +180,13 @@ pub(super) fn random_fibre(
     Err(NoRound::Failed(format!("{ATTEMPTS} random points were poles")))
 }
 
-/// What nobody should ever read.
+/// An error that should never occur.
 const ASTRAY: &str = "a random point does not lie on its own fibre";
 
 /// A polynomial in the variables of an algebra: of each term the powers of variables, by their places, and the coefficient.
 pub(super) type Element = Vec<(Vec<(usize, u16)>, u64)>;
 
-/// The functions on the points of a fibre: what was solved, and the algebra of what is left.
+/// The functions on the points of a fibre: what was solved, and the algebra of what remains.
 pub(super) struct Functions {
     solved: Solved,
     place: HashMap<u32, usize>,
@@ -274,7 +274,7 @@ pub(super) fn analysed(
     };
     let mut polynomials = Vec::new();
     for of_it in &fibre.unknowns {
-        // of an angle a combination of its cosine and its sine that tells any two points of finitely many apart
+        // of an angle a combination of its cosine and its sine that distinguishes any two of finitely many points
         let (mut jet, mut own) = (Jet::default(), 0);
         for variable in of_it {
             let factor = if of_it.len() > 1 { field.draw(rng) } else { field.one() };

@@ -24,9 +24,9 @@ use std::collections::HashMap;
 const PRIMES: usize = 4;
 /// So many points are tried.
 const ATTEMPTS: usize = 3;
-/// So many derivatives more than tell all are compared.
+/// So many derivatives beyond those that determine all are compared.
 const FURTHER: usize = 3;
-/// Longer numbers are no witness that anybody reads.
+/// Longer numbers make no witness: nobody would read them.
 const BITS: usize = 1 << 16;
 
 /// Two points of one fibre.
@@ -128,7 +128,7 @@ fn derivatives(
     unknowns: &[RBig],
     order: usize,
 ) -> Option<Vec<Vec<RBig>>> {
-    let flow = Flow::new(&model.graph, &model.rates, &model.seen, |_| false);
+    let flow = Flow::new(&model.graph, &model.rates, &model.measured, |_| false);
     let mut signals = Vec::new();
     for input in flow.inputs() {
         let Input::Plain(symbol) = input else { return None };

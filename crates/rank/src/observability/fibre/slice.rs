@@ -1,6 +1,6 @@
 //! What functions of the unknowns have one value on a whole fibre: slices of it, and how many points given functions have in common.
 //!
-//! Where a fibre is infinite its unknowns that are free are held elsewhere than at the point. The fibre of almost every point is the closure of
+//! Where a fibre is infinite its free unknowns are fixed elsewhere than at the point. The fibre of almost every point is the closure of
 //! one point over the field of the outputs, so that all of its components are met by such a slice, and what has the point's value on slices at random
 //! has it on all of the fibre.
 
@@ -54,7 +54,7 @@ impl<'a> Slicer<'a> {
     /// The fibres of a system where the question's conditions are met.
     ///
     /// # Errors
-    /// In words, where no values are counted of such a system, or values at the beginning are given.
+    /// In words, where no values are counted of such a system, or initial conditions are given.
     pub fn new(system: &System, question: &'a SolutionsQuestion<'a>) -> Result<Slicer<'a>, String> {
         let model = Model::new(system, &question.conditions, &[])?;
         if model.is_on_a_set() {
@@ -104,7 +104,7 @@ impl<'a> Slicer<'a> {
         self.course.work.set(self.course.work.get() + work);
     }
 
-    /// How many unknowns are held, without which the others are functions of the outputs and of these.
+    /// How many unknowns are fixed: the others are functions of the outputs and of these.
     pub fn free(&self) -> usize {
         self.orders.free.len()
     }
@@ -127,7 +127,7 @@ impl<'a> Slicer<'a> {
         })
     }
 
-    /// How many states and constants have the values that these functions have at a random point, those held that are not locally determined.
+    /// How many states and constants have the values that these functions have at a random point, with those fixed that are not locally observable.
     ///
     /// # Errors
     /// In words; infinitely many too.

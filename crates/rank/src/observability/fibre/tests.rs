@@ -143,7 +143,7 @@ fn the_table_of_monomials_is_one_of_powers() {
     }
 }
 
-/// Each limit ends a basis with its own word.
+/// Each limit ends a basis with its own error.
 #[test]
 fn limits_are_named() {
     let field = PrimeField::new(PRIME);

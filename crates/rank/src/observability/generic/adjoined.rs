@@ -28,8 +28,8 @@ pub(super) struct Adjoined {
     signs: Option<u64>,
 }
 
-/// Pi is transcendental: no polynomial with rational coefficients tells it from an unknown. It has one value in a field, so
-/// that a state that is told by pi is where its equations have it.
+/// Pi is transcendental: no polynomial with rational coefficients distinguishes it from an unknown. It has one value in a field, so
+/// that a state given in terms of pi has the value that its equations have.
 pub(super) fn pi_in(field: PrimeField) -> u64 {
     field.draw(&mut ChaCha8Rng::seed_from_u64(field.modulus()))
 }

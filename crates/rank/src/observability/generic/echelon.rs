@@ -76,7 +76,7 @@ impl Echelon {
     }
 
     /// Of each column, whether it is one that a row has to itself: whether the unit row lies in the span.
-    pub fn seen(&self) -> Vec<bool> {
+    pub fn observable(&self) -> Vec<bool> {
         let mut seen = vec![false; self.columns];
         for (pivot, row) in self.pivots.iter().zip(&self.rows) {
             seen[*pivot] = row.iter().enumerate().all(|(column, entry)| column == *pivot || *entry == 0);

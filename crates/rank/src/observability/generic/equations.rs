@@ -98,7 +98,7 @@ impl Equations {
         });
         let driven: Vec<usize> = driven.collect();
         let starts = starts(&mut graph, &given, conditions, &angles);
-        // a state that is told by functions has other values of them than its equations have
+        // a state given in terms of functions has other values of them than its equations have
         let related = related && starts.unknown_function(&graph).is_none();
         let (functions, measured) = measured(&mut graph, &components, &written, &angles);
         // the slope of an inverse sine has one too

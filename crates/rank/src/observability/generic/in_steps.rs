@@ -1,6 +1,6 @@
 //! The answer in discrete time: random sequences of states, until the bound is met.
 
-use super::probe::{ATTEMPTS, seen_in};
+use super::probe::{ATTEMPTS, observable_in};
 use super::steps::Steps;
 use super::{GenericAnswer, Observability, conclude, nothing_known};
 use crate::observability::saturation::Ceiling;
@@ -10,7 +10,7 @@ use palmistry_math::number::PrimeField;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// What is seen at almost all states of a system in discrete time, and of each of some functions whether it is.
+/// What is observable at almost all states of a system in discrete time, and whether each of some functions is.
 pub(super) fn answer_in_steps(
     system: &System,
     conditions: &Assignment,
@@ -39,10 +39,10 @@ pub(super) fn answer_in_steps(
         };
         answer.rounds += 1;
         answer.order = answer.order.max(order);
-        let (rank, seen) = (echelon.rank(), seen_in(&echelon, &rows));
+        let (rank, seen) = (echelon.rank(), observable_in(&echelon, &rows));
         best = Some(match best.take() {
             Some(known) if known.0 > rank => known,
-            // seen is what the others do without at no point
+            // observable is what is so at all points of this rank
             Some(known) if known.0 == rank => {
                 (rank, known.1.iter().zip(&seen).map(|(known, here)| *known && *here).collect())
             }
@@ -64,7 +64,7 @@ pub(super) fn answer_in_steps(
     if bounds.is_ok() {
         answer.closed_at_most = best.0;
         if closed.len() > answer.dimension {
-            // what has a known initial condition counts as unknown
+            // a state with a known initial condition counts as unknown
             let mut all = system.clone();
             all.known.retain(|symbol| !closed.contains(symbol));
             answer.closed_at_most = match answer_in_steps(&all, conditions, ceiling, &[]).0 {

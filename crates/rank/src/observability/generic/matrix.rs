@@ -11,11 +11,11 @@ use rand::Rng;
 /// The rank of a matrix outside a thin set, and how it is known.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GenericRank {
-    /// The rank; it is certainly no less, and no more error probability below `2^log2_error`.
+    /// The rank: certain as a lower bound, and with an error probability below `2^log2_error` as an upper bound.
     Rank {
         /// The rank.
         rank: usize,
-        /// Minus infinity where the rank is full and there is nothing to err about.
+        /// Minus infinity where the rank is full and therefore certain.
         log2_error: f64,
         /// At how many points it was tried.
         points: usize,

@@ -1,9 +1,8 @@
-//! What is seen at almost all states: the rank of the observability codistribution, and of each unknown whether it is seen,
-//! by power series modulo a prime. No words of Lie derivatives are formed, and nothing is written out: the cost grows with a
-//! power of the number of unknowns.
+//! What is observable at almost all states: the rank of the observability codistribution, and whether each unknown is observable, by power series
+//! modulo a prime. No Lie derivatives are formed, and nothing is written out: the cost grows with a power of the number of unknowns.
 //!
 //! From a random state, with random series for the inputs, the outputs' derivatives and their differentials are computed in residues
-//! ([`equations`], [`covectors`]). Their span is that of all words: words are the coefficients of the inputs' derivatives
+//! ([`equations`], [`covectors`]). Their span is that of all Lie derivatives: these are the coefficients of the inputs' derivatives
 //! in it. Once a derivative of an output adds nothing, no further one of it does ([`super::saturation`]). A nonzero minor modulo one prime is a nonzero
 //! minor, so what is found is certainly there; that nothing was missed is as certain as [`bound`] says.
 //!
@@ -49,32 +48,32 @@ use rand_chacha::ChaCha8Rng;
 pub enum Observability {
     /// It is a function of what is measured, near almost every state.
     Yes,
-    /// It can change and nothing that is measured does.
+    /// It can change while no output changes.
     No,
     /// Neither is shown.
     Undecided,
 }
 
-/// What is seen at almost all states, or on almost all of a set.
+/// What is observable at almost all states, or on almost all of a set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GenericAnswer {
     /// How many unknowns there are.
     pub dimension: usize,
     /// The rank is no less: a minor was found that does not vanish.
     pub at_least: usize,
-    /// Nor more, error probability below `2^log2_error`.
+    /// And no greater, with an error probability below `2^log2_error`.
     pub at_most: usize,
-    /// The same bound where known initial conditions counts as unknown.
+    /// The same bound where states with known initial conditions count as unknown.
     pub(crate) closed_at_most: usize,
-    /// Minus infinity where the rank is full and there is nothing to err about.
+    /// Minus infinity where the rank is full and therefore certain.
     pub log2_error: f64,
     /// At how many random points, each modulo a random prime.
     pub rounds: usize,
     /// How many derivatives of the outputs were needed.
     pub order: usize,
-    /// The unknowns in the order of the file, and whether each is seen.
+    /// The unknowns in the order of the file, and whether each is observable.
     pub unknowns: Vec<(Symbol, Observability)>,
-    /// Of each of them whether it is seen wherever the rank is `at_most`, with the same error.
+    /// Whether each of them is observable wherever the rank is `at_most`, with the same error.
     pub(crate) seen_at_most: Vec<bool>,
     /// Why the two bounds differ, or nothing more is known.
     pub open: Option<String>,
@@ -92,13 +91,13 @@ impl GenericAnswer {
     }
 }
 
-/// What is seen at almost all states that satisfy the conditions.
+/// What is observable at almost all states that satisfy the conditions.
 pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling) -> GenericAnswer {
     generic_answer_of(system, conditions, ceiling, &[]).0
 }
 
-/// The same, and of each of some functions whether it is seen: whether its differential lies in the span of those of what is
-/// measured. That it does not is as certain as the rank; that it does, as what else is said to be seen.
+/// The same, and whether each of some functions is observable: whether its differential lies in the span of those of what is measured. A negative
+/// answer is as certain as the rank; a positive one is as certain as for an unknown.
 pub fn generic_answer_of(
     system: &System,
     conditions: &Assignment,
@@ -146,13 +145,13 @@ pub fn generic_answer_of(
         answer.order = found.iter().map(|here| here.order).fold(answer.order, usize::max);
         closed = found.iter().map(|here| here.closed).fold(closed, usize::max);
         // which choice of signs is which is another matter at every point
-        let mut found: Vec<_> = found.iter().map(|here| (here.rank(), here.seen())).collect();
+        let mut found: Vec<_> = found.iter().map(|here| (here.rank(), here.observable())).collect();
         found.sort_unstable();
         for (best, here) in best.iter_mut().zip(found) {
             if here.0 > best.0 {
                 *best = here;
             } else if here.0 == best.0 {
-                // seen is what the others do without at no point
+                // observable is what is so at all points of this rank
                 best.1.iter_mut().zip(here.1).for_each(|(best, here)| *best &= here);
             }
         }
@@ -168,7 +167,8 @@ pub fn generic_answer_of(
     (answer, seen)
 }
 
-/// Up to which derivative of each output all is told at almost all states that satisfy the conditions, which the fields leave; nothing where that cannot be said.
+/// The order up to which the derivatives of each output determine all that any derivatives do, at almost all states that satisfy the conditions,
+/// which are no invariant set; nothing where that cannot be said.
 pub(crate) fn orders_on_orbits(
     system: &System,
     conditions: &Assignment,
@@ -182,10 +182,10 @@ pub(crate) fn orders_on_orbits(
 
 /// Whether no output ties a known signal to states: signals are anything then.
 fn is_of_free_signals(system: &System) -> bool {
-    system.zero_outputs().is_empty() && system.longest_word().is_none()
+    system.zero_outputs().is_empty() && system.highest_lie_order().is_none()
 }
 
-/// The same on a set that the fields leave, by as many derivatives as tell all there; nothing where that cannot be said.
+/// The same on a set that is not invariant, by as many derivatives as determine all there; nothing where that cannot be said.
 fn on_orbits(
     system: &System,
     conditions: &Assignment,
@@ -205,7 +205,7 @@ fn on_orbits(
         let found = probe.round_up_to(&orbit.last, rng).ok()?;
         answer.rounds += 1;
         answer.order = answer.order.max(found.order);
-        let (rank, seen) = (found.rank(), found.seen());
+        let (rank, seen) = (found.rank(), found.observable());
         if rank > best.0 {
             best = (rank, seen);
         } else if rank == best.0 {
@@ -242,7 +242,7 @@ fn functions_are_known(equations: &Equations) -> bool {
     equations.related && (equations.roots == 0 || equations.roots <= MOST_ROOTS)
 }
 
-/// What follows from the ranks of each choice of signs; of the functions that are asked for, whether each is seen.
+/// What follows from the ranks of each choice of signs; whether each function that is asked for is observable.
 fn conclude(
     answer: &mut GenericAnswer,
     best: &[(usize, Vec<bool>)],

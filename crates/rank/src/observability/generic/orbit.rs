@@ -1,8 +1,8 @@
-//! How many derivatives of the outputs tell all at the states of a set that the fields leave, as where initial conditions are numbers.
+//! How many derivatives of the outputs determine all at the states of a set that is not invariant, as where initial conditions are numbers.
 //!
 //! There a derivative may add nothing and a later one may. Let `c_k` be the differential of an output's k-th derivative by all coordinates that move, along
 //! the trajectory from a state of the set, with `c_r = sum_(k<r) a_k c_k` at almost all states around. Where `c_0 ... c_(r-1)` are independent at almost all times of the trajectory, so that their minors
-//! vanish at its beginning at most, the same holds along it with Laurent series `a_k(t)`. How the output changes with the state at the beginning, `w = c_0 S`
+//! vanish at its start at most, the same holds along it with Laurent series `a_k(t)`. How the output changes with the initial state, `w = c_0 S`
 //! for a direction `S` that moves with the linearised flow, has `w^(k) = c_k S`, and so satisfies the linear equation `w^(r) = sum a_k(t) w^(k)` in whatever direction. A solution
 //! of it that is not zero begins with a power of time whose exponent is a root of the indicial polynomial. No further derivatives than up to the largest root that is an integer have to be looked at:
 //! what does not change these does not change the output at all.
@@ -25,7 +25,7 @@ use palmistry_math::number::{PrimeField, Refusal};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-/// Up to which derivative of each output all is told.
+/// The order up to which the derivatives of each output determine all that any derivatives do.
 pub(crate) struct Orbit {
     /// Of each output.
     pub last: Vec<usize>,
@@ -222,7 +222,7 @@ pub(super) fn probes(system: &System, conditions: &Assignment, asked: &[NodeId])
     (Probe::asking(&system, conditions, &asked), Probe::asking(&system, &of_constants, &asked))
 }
 
-/// The system with states that are known at the beginning and do not leave their values, as an amount that is nought and stays so, as these values.
+/// The system with the values put in of states that keep their known initial values, as an amount that is zero and stays so.
 fn settled(system: &System, conditions: &Assignment, asked: &[NodeId]) -> (System, Vec<NodeId>) {
     let mut system = system.clone();
     let is_number = |system: &System, value: NodeId| {

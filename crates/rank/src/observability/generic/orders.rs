@@ -1,4 +1,4 @@
-//! How many derivatives of each output tell all that any tell.
+//! How many derivatives of each output determine all that any derivatives do.
 //!
 //! The first derivative `y_i^(h_i)` whose differential lies in the span of those below it is algebraic over these. Differentiated, the
 //! equation that it satisfies is linear in `y_i^(h_i + 1)`, so that this and all further derivatives are *rational* in the
@@ -11,7 +11,7 @@ use palmistry_math::number::{PrimeField, Refusal};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-/// The derivatives that tell all.
+/// The derivatives that determine all that any derivatives do.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Orders {
     /// Of each output the order `h` of the first derivative that adds nothing to those below.
@@ -30,8 +30,8 @@ impl Orders {
 }
 
 impl Probe {
-    /// The orders at a random point of a set that the fields may leave: there a derivative may add nothing and a later one may, so that
-    /// as many are looked at as there are coordinates, or as `told` says of each output.
+    /// The orders at a random point of a set that need not be invariant: there a derivative may add nothing and a later one may, so
+    /// that orders up to one more than there are coordinates are looked at, or up to `told` of each output.
     ///
     /// # Errors
     /// In words, where the points were poles.

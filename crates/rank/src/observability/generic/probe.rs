@@ -27,7 +27,7 @@ pub(super) struct Evaluated {
     pub echelon: Echelon,
     /// The differentials of the functions that are asked for, by unknowns.
     asked: Vec<Vec<u64>>,
-    /// The rank where known initial conditions counts as unknown.
+    /// The rank where states with known initial conditions count as unknown.
     pub closed: usize,
     pub order: usize,
 }
@@ -43,15 +43,15 @@ impl Evaluated {
         self.echelon.rank()
     }
 
-    /// Of each unknown, and then of each function that is asked for, whether it is seen here.
-    pub fn seen(&self) -> Vec<bool> {
-        seen_in(&self.echelon, &self.asked)
+    /// Whether each unknown, and then each function that is asked for, is observable here.
+    pub fn observable(&self) -> Vec<bool> {
+        observable_in(&self.echelon, &self.asked)
     }
 }
 
 /// Of each unknown whether its unit row lies in the span, then of each of these rows.
-pub(super) fn seen_in(echelon: &Echelon, asked: &[Vec<u64>]) -> Vec<bool> {
-    let mut seen = echelon.seen();
+pub(super) fn observable_in(echelon: &Echelon, asked: &[Vec<u64>]) -> Vec<bool> {
+    let mut seen = echelon.observable();
     seen.extend(asked.iter().map(|row| echelon.contains(row.clone())));
     seen
 }
@@ -79,11 +79,11 @@ impl Probe {
         Probe::asking(system, conditions, &[])
     }
 
-    /// The same, which asks of functions besides whether they are seen.
+    /// The same, which also asks whether functions are observable.
     pub(super) fn asking(system: &System, conditions: &Assignment, asked: &[NodeId]) -> Probe {
         Probe {
             equations: Equations::new(system, conditions, asked),
-            highest: system.longest_word(),
+            highest: system.highest_lie_order(),
             sufficed: AtomicUsize::new(0),
         }
     }
@@ -93,7 +93,7 @@ impl Probe {
         let equations = &self.equations;
         let full = equations.columns.len();
         let most = match equations.closed.len().max(1) {
-            // at a state of its own a derivative of high order may be the first that tells something
+            // at a special state the first informative derivative may be of high order
             closed if !rests && closed <= SMALL => 2 * closed + 2,
             closed => closed,
         };
@@ -167,7 +167,7 @@ impl Probe {
         let start = self.equations.start(field, &inputs, seed).ok()?;
         let draw = Draw { field, seed, signs: None };
         let quick = self.evaluate(&start, draw, true).ok()?.rank();
-        // at a state of its own a derivative may add nothing and the next one may
+        // at a special state a derivative may add nothing and the next one may
         if quick == most { Some(quick) } else { Some(self.evaluate(&start, draw, false).ok()?.rank()) }
     }
 
@@ -198,7 +198,7 @@ impl Probe {
         Err(format!("{attempts} random points were poles: {refused}"))
     }
 
-    /// The vectors that nothing sees at one random point, and the point: see [`Directions`].
+    /// The unobservable directions at one random point, and the point: see [`Directions`].
     ///
     /// # Errors
     /// In words, where the points were poles.
@@ -224,7 +224,7 @@ impl Probe {
         !self.equations.functions.is_empty()
     }
 
-    /// A basis of the vectors that nothing sees at one point, by unknowns in the order of the file; all else is drawn from the seed.
+    /// A basis of the unobservable directions at one point, by unknowns in the order of the file; all else is drawn from the seed.
     ///
     /// # Errors
     /// Where the point is a pole.
@@ -252,7 +252,7 @@ impl Probe {
     }
 }
 
-/// What is not seen at one random point.
+/// The unobservable directions at one random point.
 #[derive(Clone, Debug)]
 pub struct Directions {
     /// The field of residues.

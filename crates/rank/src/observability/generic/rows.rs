@@ -31,7 +31,7 @@ impl Rows {
 
     /// Whether the unit rows of these columns lie in it.
     pub fn has(&self, columns: &[usize]) -> bool {
-        let seen = self.0.seen();
+        let seen = self.0.observable();
         columns.iter().all(|column| seen[*column])
     }
 }

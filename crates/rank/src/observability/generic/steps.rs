@@ -1,8 +1,8 @@
 //! The generic answer in discrete time: a random state is followed modulo a prime for as many steps as can show anything new
-//! ([`crate::observability::saturation`]), a known signal drawn anew at each, and the derivatives by the state at the beginning with it. Nothing is written
+//! ([`crate::observability::saturation`]), a known signal drawn anew at each, and the derivatives by the initial state with it. Nothing is written
 //! out, so that the cost of a step is that of the map and of a product with its Jacobian.
 //!
-//! After `k` steps of a map of degree `d` what is seen is of degree `d^k` in what was drawn, the logarithm of its coefficients
+//! After `k` steps of a map of degree `d` the outputs are of degree `d^k` in what was drawn, the logarithm of its coefficients
 //! likewise; where that is too much for the prime a short rank is left open, and a full one is certain all the same.
 
 use super::bound::Rounds;
@@ -30,7 +30,7 @@ enum Next {
 
 /// The map, its outputs and their derivatives, ready to be followed.
 pub(super) struct Steps {
-    /// The inputs of `step` at the beginning, from what is free where the conditions are met.
+    /// The initial inputs of `step`, from what is free where the conditions are met.
     start: Program,
     step: Program,
     next: Vec<Next>,
@@ -40,7 +40,7 @@ pub(super) struct Steps {
     /// Where among the values of a step these begin.
     begin: usize,
     outputs: usize,
-    /// How many functions are asked for at the beginning: they come behind the outputs.
+    /// How many functions of the initial state are asked for: they come behind the outputs.
     asked: usize,
     /// What the bound of degrees is taken from.
     measured: Program,
@@ -52,7 +52,7 @@ pub(super) struct Steps {
 }
 
 impl Steps {
-    /// Of a system in discrete time, where conditions are met. `rests` says that it leaves no state of that set.
+    /// Of a system in discrete time, where conditions are met. `rests` says that the map takes that set into itself.
     ///
     /// # Errors
     /// In words, where something is met that is no rational function of numbers, sines and cosines.
@@ -190,7 +190,7 @@ impl Steps {
         let step = self.step.load(field)?;
         let width = self.columns.len();
         let (mut echelon, mut order) = (Echelon::new(field, width), 0);
-        // the derivatives of all that moves by the unknowns at the beginning
+        // the derivatives of all that moves by the initial unknowns
         let mut slopes = vec![vec![0; width]; self.closed];
         for (column, place) in self.columns.iter().enumerate() {
             slopes[*place][column] = field.one();

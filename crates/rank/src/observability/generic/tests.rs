@@ -1,4 +1,4 @@
-//! The generic answer against words of Lie derivatives, and against systems whose answers are known by hand.
+//! The generic answer against Lie derivatives, and against systems whose answers are known by hand.
 
 use super::*;
 use crate::observability::{Codistribution, Length};
@@ -11,7 +11,7 @@ fn answer(text: &str) -> (System, GenericAnswer) {
     (system, answer)
 }
 
-/// The rank by bounds, and the names of what is not seen.
+/// The rank by bounds, and the names of what is unobservable.
 fn found(text: &str) -> (usize, usize, Vec<String>) {
     let (system, answer) = answer(text);
     let unobservable = answer.unknowns.iter().filter(|(_, seen)| *seen == Observability::No);
@@ -35,12 +35,19 @@ fn words_and_series_span_the_same() {
             if system.states.is_empty() || system.outputs.is_empty() || system.moving_fields().is_empty() {
                 continue;
             }
-            let Ok(words) = Codistribution::new(&mut system, &Assignment::new(), Length::UntilItStops) else {
+            let Ok(lie_derivatives) =
+                Codistribution::new(&mut system, &Assignment::new(), Length::UntilItStops)
+            else {
                 continue;
             };
             let series = generic_answer(&system, &Assignment::new(), Ceiling::Rests);
-            if words.is_final() {
-                assert_eq!(series.rank(), Some(words.generic_rank()), "{}: {series:?}", name_of(&path));
+            if lie_derivatives.is_final() {
+                assert_eq!(
+                    series.rank(),
+                    Some(lie_derivatives.generic_rank()),
+                    "{}: {series:?}",
+                    name_of(&path)
+                );
                 seen += 1;
             }
         }
@@ -50,14 +57,14 @@ fn words_and_series_span_the_same() {
 
 #[test]
 fn what_is_known_by_hand() {
-    // only the sum is seen
+    // only the sum is observable
     assert_eq!(found("state x, y drift f x' = 0 y' = 0 output x + y"), (1, 1, vec!["x".into(), "y".into()]));
     // a harmonic oscillator with unknown frequency
     assert_eq!(found("state x, v, k drift f x' = v v' = -k*x k' = 0 output x"), (3, 3, vec![]));
-    // logistic growth seen up to a factor: only r is seen
+    // logistic growth measured up to a factor: only r is identifiable
     let scaled = "state x, r, K, s drift f x' = r*x*(1 - x/K) r' = 0 K' = 0 s' = 0 output s*x";
     assert_eq!(found(scaled), (3, 3, vec!["x".into(), "K".into(), "s".into()]));
-    // the input tells what the drift does not: x2 enters with the input alone
+    // the input makes observable what the drift does not: p enters with the input alone
     let driven = "state x, p drift f x' = 0 p' = 0 input g x' = p p' = 0 output x";
     assert_eq!(found(driven), (2, 2, vec![]));
     // an output that is constant
@@ -66,7 +73,7 @@ fn what_is_known_by_hand() {
     assert_eq!(found("state x, z drift f x' = 1 z' = 0 output x^5*z"), (2, 2, vec![]));
 }
 
-/// The unicycle seen by its range to a beacon: rotations about the beacon are not seen.
+/// The unicycle measured by its range to a beacon: rotations about the beacon are unobservable.
 #[test]
 fn a_unicycle_seen_by_ranges_turns_unseen() {
     let text = "state x, y, theta angle theta input v x' = cos(theta) y' = sin(theta) others' = 0 input w theta' = 1 others' = 0 output x^2 + y^2";
@@ -127,7 +134,7 @@ fn long_sums_are_reduced_in_time() {
     }
 }
 
-/// By hand, see `tests/claims/inputs.rs`: signals that are known have no column, and a known initial condition alone has
+/// By hand, as in `tests/claims/inputs.rs`: signals that are known have no column, and a known initial condition alone has
 /// none and yet leads to what is not.
 #[test]
 fn known_coordinates_have_no_column() {
@@ -143,7 +150,7 @@ fn known_coordinates_have_no_column() {
     assert_eq!(found(twice), (6, 6, vec![]));
 }
 
-/// In discrete time: the same ranks as by words, also where the images are a thin set, and of each unknown whether it is seen.
+/// In discrete time: the same ranks as by Lie derivatives, also where the images are a thin set, and whether each unknown is observable.
 #[test]
 fn sequences_are_followed_in_discrete_time() {
     for (text, rank, seen) in [
@@ -162,13 +169,17 @@ fn sequences_are_followed_in_discrete_time() {
         let found = generic_answer(&system, &Assignment::new(), Ceiling::Rests);
         assert_eq!(found.at_least, rank, "{text}: {found:?}");
         assert_eq!(found.is_final(), !seen.starts_with('?'), "{text}: {found:?}");
-        let word = |seen: &Observability| match seen {
+        let lie_derivative = |seen: &Observability| match seen {
             Observability::Yes => 'y',
             Observability::No => 'n',
             Observability::Undecided => '?',
         };
         if !seen.is_empty() {
-            assert_eq!(found.unknowns.iter().map(|(_, seen)| word(seen)).collect::<String>(), seen, "{text}");
+            assert_eq!(
+                found.unknowns.iter().map(|(_, seen)| lie_derivative(seen)).collect::<String>(),
+                seen,
+                "{text}"
+            );
         }
         if rank < found.dimension && found.is_final() {
             assert!(found.log2_error < -100.0, "{text}: {found:?}");
@@ -176,8 +187,8 @@ fn sequences_are_followed_in_discrete_time() {
     }
 }
 
-/// On the set `x = pi` the second factor of the output is zero, and so is every derivative of it: `x` is seen, and `z` not. Of a set
-/// that is told by another function no more is said than holds around it.
+/// On the set `x = pi` the second factor of the output is zero, and so is every derivative of it: `x` is observable, and `z` not. On a
+/// set given in terms of another function the answer is what holds around it.
 #[test]
 fn states_that_are_told_by_pi_or_by_functions() {
     for (value, expected) in [("pi", Some(1)), ("3", Some(1)), ("sqrt(2)", None), ("exp(1)", None)] {

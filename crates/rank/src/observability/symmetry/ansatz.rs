@@ -193,7 +193,7 @@ impl Search<'_> {
         if self.is_complete() {
             return;
         }
-        // any point at which the fields have values: what is not seen there is not asked for
+        // any point at which the fields have values: the kernel there is not needed
         let at_one_point = |_| {
             let point = self.source.draw(rng);
             let all = self.chosen.iter().chain([&field]);

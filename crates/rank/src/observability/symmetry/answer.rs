@@ -1,4 +1,4 @@
-//! What was found of the unobservable directions and of the functions that are seen.
+//! What was found of the unobservable directions and of the observable functions.
 
 use palmistry_lang::Assignment;
 use palmistry_math::expression::{NodeId, Symbol};
@@ -49,18 +49,18 @@ pub(super) struct UnseenBlock {
     pub functions: Range<usize>,
 }
 
-/// What is seen and what is not, at almost all states.
+/// What is observable and what is not, at almost all states.
 #[derive(Clone, Debug, Default)]
 pub struct UnobservableDirections {
     /// Independent fields, at almost all states.
     pub fields: Vec<UnobservableField>,
     /// How many further unobservable directions there are, of which no field was found.
     pub fields_missing: usize,
-    /// The states that are seen by themselves, in their order.
-    pub seen: Vec<Symbol>,
+    /// The observable states, in their order.
+    pub observable: Vec<Symbol>,
     /// Their names.
-    pub seen_names: Vec<String>,
-    /// Functions of the other states that are seen, independent of one another.
+    pub observable_names: Vec<String>,
+    /// Observable functions of the other states, independent of one another.
     pub functions: Vec<ObservableFunction>,
     /// How many further such functions there are.
     pub functions_missing: usize,
@@ -76,7 +76,7 @@ pub struct UnobservableDirections {
 }
 
 impl UnobservableDirections {
-    /// How many directions are not seen at almost all states: the dimension less the rank.
+    /// How many directions are unobservable at almost all states: the dimension less the rank.
     pub fn directions(&self) -> usize {
         self.fields.len() + self.fields_missing
     }

@@ -1,4 +1,4 @@
-//! A function of the old coordinates as a polynomial of low degree in functions that are seen, by linear equations at random points
+//! A function of the old coordinates as a polynomial of low degree in observable functions, by linear equations at random points
 //! modulo a prime: `L_f (x^2 + y^2) = 2 (x u + y v)`. That it is that function is proved elsewhere.
 
 use super::modular::{Echelon, Residues, in_integers};

@@ -1,5 +1,5 @@
-//! Functions that no unseen field changes: products of powers of polynomials that the fields multiply by constants, such as `V/K`
-//! under a scaling, `x2 - x1` under a translation, `(x2 - x1)/(x3 - x1)` under both.
+//! Functions that no unobservable field changes: products of powers of polynomials that the fields multiply by constants, such as
+//! `V/K` under a scaling, `x2 - x1` under a translation, `(x2 - x1)/(x3 - x1)` under both.
 
 use super::ansatz::FieldTerms;
 use super::kernel::{Block, KernelSource, Point};
@@ -153,7 +153,7 @@ impl Search<'_> {
     fn degree(&mut self, degree: usize, factors: &[i64], wanted: usize, rng: &mut ChaCha8Rng) {
         let source = self.source;
         let own = |place: &usize| self.column_of(*place).is_some();
-        // what scalings leave are products of powers of the coordinates that they scale
+        // what scalings keep are products of powers of the coordinates that they scale
         let only_scalings = self.others.as_ref().is_some_and(Vec::is_empty);
         let others: &[usize] = if only_scalings { &[] } else { self.block.variables(source) };
         let variables: Vec<usize> =
@@ -177,7 +177,7 @@ impl Search<'_> {
             };
             all.extend(self.block.columns.iter().filter_map(angle));
         }
-        // of what is seen by itself nothing is looked for
+        // nothing is looked for among the observable coordinates
         let mut classes: BTreeMap<Vec<i64>, Vec<Monomial>> = BTreeMap::new();
         for monomial in all {
             if monomial.angle.is_some() || monomial.powers.iter().any(|(place, _)| own(place)) {

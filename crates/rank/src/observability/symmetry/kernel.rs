@@ -1,4 +1,4 @@
-//! What a codistribution does not see at random points modulo a prime, and on which coordinates that depends.
+//! The kernel of a codistribution at random points modulo a prime, and the coordinates on which it depends.
 
 use super::modular::{Echelon, Residues};
 use crate::observability::generic::Probe;
@@ -13,11 +13,11 @@ use std::cell::OnceCell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
-/// How what is not seen is computed at a point.
+/// How the kernel is computed at a point.
 pub(super) enum Evaluation {
-    /// From the differentials of words, row after row.
+    /// From the differentials of Lie derivatives, row after row.
     Words(Program),
-    /// From power series along a trajectory: no words are needed.
+    /// From power series along a trajectory: no Lie derivatives are needed.
     Series(Box<Probe>),
 }
 
@@ -69,7 +69,7 @@ impl Evaluation {
 impl KernelSource {
     /// The kernel of rows with a column for each of `coordinates`; none where they are long, or are of functions of whose values
     /// nothing is known.
-    pub fn of_words(
+    pub fn of_lie_derivatives(
         system: &mut System,
         rows: &[NodeId],
         coordinates: &[Symbol],
@@ -84,7 +84,7 @@ impl KernelSource {
         fits.then(|| KernelSource::new(system, Evaluation::Words(program), coordinates, rng))
     }
 
-    /// The kernel of all words, at values of parameters.
+    /// The kernel of all Lie derivatives, at values of parameters.
     pub fn of_series(
         system: &System,
         values: &Assignment,
@@ -193,7 +193,7 @@ impl KernelSource {
         }
     }
 
-    /// What the rows do not see at a point; none at a pole.
+    /// The kernel of the rows at a point; none at a pole.
     pub fn kernel(&self, point: &Point) -> Option<Kernel> {
         let inputs: Vec<u64> = self
             .feeds

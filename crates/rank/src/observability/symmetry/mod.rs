@@ -1,11 +1,11 @@
-//! What is not seen, as vector fields, and what is seen, as functions.
+//! The unobservable directions, as vector fields, and what is observable, as functions.
 //!
-//! At almost all states the directions that a codistribution does not see are as many as the dimension exceeds its rank. Along
+//! At almost all states there are as many unobservable directions as the dimension exceeds the rank of the codistribution. Along
 //! vector fields in these directions the state moves and every output stays what it is: turning everything about a beacon, counting
-//! in other units. A function whose differential lies in the codistribution is seen: such a motion does not change it.
+//! in other units. A function whose differential lies in the codistribution is observable: such a motion does not change it.
 //!
 //! Fields and functions are found by linear equations at random points modulo a prime, in polynomials of low degree, and then
-//! [proved](proof). What is not found so is counted, and nothing is said of it.
+//! [proved](proof). What is not found so is only counted.
 
 mod ansatz;
 mod answer;
@@ -43,10 +43,10 @@ use rand_chacha::ChaCha8Rng;
 /// How often a point is drawn anew because it is a pole.
 const ATTEMPTS: usize = 40;
 
-/// The fields and the functions of a system that is seen in part, off any conditions on states. `held` are the values of parameters
-/// that were put in, `given` those of them that the question gave. Final `words` that were taken with them are a short way to what
-/// is not seen at a point; without them power series tell. None where no point could be evaluated.
-pub fn unseen_motions(
+/// The fields and the functions of a system that is partly observable, without conditions on states. `held` are the values of
+/// parameters that were put in, `given` those of them that the question gave. If `words`, the Lie derivatives that were taken with
+/// them, are final, they give the kernel at a point; otherwise power series do. None where no point could be evaluated.
+pub fn unobservable_directions(
     system: &mut System,
     words: Option<&Codistribution>,
     held: &Assignment,
@@ -65,7 +65,7 @@ pub fn unseen_motions(
     }
 }
 
-/// Lie derivatives with longer texts are no functions that anybody reads.
+/// Lie derivatives with longer texts are left out: nobody would read them.
 const LONGEST_TEXT: usize = 160;
 /// How many points are looked at for the number of unobservable directions.
 const POINTS: usize = 3;
@@ -77,7 +77,7 @@ struct Attempt {
 }
 
 impl Attempt {
-    /// What is found at values of parameters, those that the words were taken with or others.
+    /// What is found at values of parameters, those with which the Lie derivatives were taken or others.
     fn new(
         system: &mut System,
         words: Option<&Codistribution>,
@@ -86,8 +86,10 @@ impl Attempt {
     ) -> Option<Attempt> {
         let coordinates = system.unknowns();
         let rows = words.map(|words| system.graph.substitute(&words.needed_entries(), values));
-        let of_words = rows.as_ref().and_then(|rows| KernelSource::of_words(system, rows, &coordinates, rng));
-        let source = of_words.unwrap_or_else(|| KernelSource::of_series(system, values, &coordinates, rng));
+        let of_lie_derivatives =
+            rows.as_ref().and_then(|rows| KernelSource::of_lie_derivatives(system, rows, &coordinates, rng));
+        let source =
+            of_lie_derivatives.unwrap_or_else(|| KernelSource::of_series(system, values, &coordinates, rng));
         let points = (0..POINTS).filter_map(|_| source.sample(None, rng));
         let (point, kernel) = points.min_by_key(|(_, kernel)| kernel.basis.len())?;
         let unobservable = kernel.basis.len();
@@ -114,12 +116,12 @@ impl Attempt {
                     >= coordinates.len() - unobservable);
         attempt.functions(system, (&source, &kernel), &blocks, &of_blocks, &motion, rng);
         attempt.measured(system, words, &motion, &blocks, rng);
-        attempt.found.seen = (0..coordinates.len())
+        attempt.found.observable = (0..coordinates.len())
             .filter(|column| blocks.iter().all(|block| !block.columns.contains(column)))
             .map(|column| coordinates[column])
             .collect();
-        attempt.found.seen_names =
-            attempt.found.seen.iter().map(|symbol| system.symbol_name(*symbol).to_owned()).collect();
+        attempt.found.observable_names =
+            attempt.found.observable.iter().map(|symbol| system.symbol_name(*symbol).to_owned()).collect();
         Some(attempt)
     }
 
@@ -127,7 +129,7 @@ impl Attempt {
         self.found.fields_missing == 0
     }
 
-    /// Takes the fields that can be proved: all at once, or each by the words, where these are final.
+    /// Takes the fields that can be proved: all at once, or each by the Lie derivatives, where these are final.
     fn prove_fields(
         &mut self,
         system: &mut System,
@@ -153,7 +155,7 @@ impl Attempt {
             };
             of_blocks.iter().flatten().map(at).collect::<Option<Vec<_>>>()
         });
-        // brackets are of motions along fields; of steps the words alone tell
+        // brackets are of motions along fields; in discrete time only the Lie derivatives decide
         let values = values.filter(|_| system.time == Time::Continuous);
         let together =
             values.and_then(|values| is_unseen_for_good(system, motion, &all, values, source.residues, rng));
@@ -193,7 +195,7 @@ impl Attempt {
             for function in found.functions {
                 let factors = factor_nodes(&mut system.graph, &source.variables, &function);
                 let value = product(&mut system.graph, &factors);
-                // that all unobservable directions leave it as it is puts its differential into the codistribution
+                // where no unobservable direction changes it, its differential lies in the codistribution
                 let proof = match self.is_complete() && self.found.settles_the_rank {
                     true => is_unchanged(system, motion, &self.vectors, value, rng),
                     false => None,
@@ -216,7 +218,7 @@ impl Attempt {
         }
     }
 
-    /// Where functions are missing, takes what stands in the file: parts of rates and outputs that are seen, the outputs
+    /// Where functions are missing, takes what stands in the file: observable parts of rates and outputs, the outputs
     /// themselves, and their Lie derivatives.
     fn measured(
         &mut self,
@@ -229,7 +231,7 @@ impl Attempt {
         if self.found.functions_missing == 0 {
             return;
         }
-        // a part of a rate or an output that no field changes is seen, if there are no other unobservable directions
+        // a part of a rate or an output that no field changes is observable, if there are no other unobservable directions
         let mut candidates: Vec<(NodeId, String, Option<f64>)> = Vec::new();
         if self.is_complete() && self.found.settles_the_rank {
             let fields_err = together(self.found.fields.iter().map(|field| field.log2_error));
@@ -248,7 +250,7 @@ impl Attempt {
         let unknowns = system.unknowns();
         let coupled = |column: &usize| blocks.iter().any(|block| block.columns.contains(column));
         let columns: Vec<usize> = (0..unknowns.len()).filter(coupled).collect();
-        // what is seen by itself is left out of the differentials
+        // observable coordinates are left out of the differentials
         let row = |system: &mut System, value: NodeId| -> Vec<NodeId> {
             let row = system.differential(value);
             columns.iter().map(|column| row[*column]).collect()
@@ -330,7 +332,7 @@ fn rank_somewhere(
     })
 }
 
-/// What moves the states and what is seen of them, with values of parameters.
+/// What moves the states and what is measured of them, with values of parameters.
 fn motion(system: &mut System, values: &Assignment) -> Motion {
     let states = system.states.clone();
     let zero = system.graph.integer(0);

@@ -162,7 +162,7 @@ pub(super) fn simple_vectors(
                 vector
             })
             .collect();
-        // one after the other, so that what is left is a basis of the same space
+        // one after the other, so that the result is a basis of the same space
         for _ in 0..PASSES {
             let mut shorter = false;
             for place in 0..reduced.len() {

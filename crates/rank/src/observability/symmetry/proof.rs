@@ -2,8 +2,8 @@
 //!
 //! Let independent fields `v_1 ... v_s` span a distribution. If it annihilates the outputs, and the brackets of its fields with the
 //! drift and the inputs lie in it again, then it annihilates all Lie derivatives of the outputs, of any length: `L_v L_f a =
-//! L_f L_v a - L_[f,v] a`, by induction (Isidori, Nonlinear Control Systems, 3rd edition, 1995, section 1.9). No word of the
-//! codistribution is needed for that, and the rank is at most the dimension less `s`.
+//! L_f L_v a - L_[f,v] a`, by induction (Isidori, Nonlinear Control Systems, 3rd edition, 1995, section 1.9). No Lie derivative of
+//! the codistribution is needed for that, and the rank is at most the dimension less `s`.
 
 use super::modular::Residues;
 use palmistry_lang::System;
@@ -13,7 +13,7 @@ use palmistry_math::expression::{
 use rand_chacha::ChaCha8Rng;
 use std::collections::HashMap;
 
-/// The motion and the outputs of a system, with some parameters held at values.
+/// The motion and the outputs of a system, with some parameters fixed at values.
 pub(super) struct Motion {
     /// Every state, known ones included.
     pub states: Vec<Symbol>,

@@ -1,5 +1,5 @@
-//! A system without what is not seen, written as a proof file: its states are those that are seen by themselves and the functions
-//! that are seen of the others, its claims that these move as the file says and that the outputs are the same.
+//! A system without its unobservable directions, written as a proof file: its states are the observable states and observable
+//! functions of the others, its claims that these move as the file says and that the outputs are the same.
 
 use super::answer::UnobservableDirections;
 use super::express::{Ingredient, as_polynomial};
@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write;
 
-/// Why a system is not written without what is not seen.
+/// Why a system is not written without its unobservable directions.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotReparametrised {
     /// Fields or functions are missing.
@@ -35,7 +35,7 @@ pub enum NotReparametrised {
     /// Steps are compositions, and no derivatives along a field.
     #[error("a system in discrete time is not written anew")]
     DiscreteTime,
-    /// A rate would be longer than anybody reads.
+    /// A rate would be too long to read.
     #[error("the rates are too long to be written")]
     TooLong,
 }
@@ -56,8 +56,8 @@ struct Coordinate {
     is_angle: bool,
 }
 
-/// The text of a proof file that imports the original as `import` and reduces it to what is seen. `found` was found of this very
-/// system.
+/// The text of a proof file that imports the original as `import` and reduces it to what is observable. `found` was found of this
+/// very system.
 ///
 /// # Errors
 /// Where something is missing for that.
@@ -135,10 +135,10 @@ fn ingredients(system: &mut System, motion: &Motion, coordinates: &[Coordinate])
     found
 }
 
-/// What is seen by itself, and a new symbol for each function.
+/// The observable states, and a new symbol for each function.
 fn coordinates(system: &mut System, found: &UnobservableDirections) -> Vec<Coordinate> {
     let mut all = Vec::new();
-    for symbol in &found.seen {
+    for symbol in &found.observable {
         let name = system.symbol_name(*symbol).to_owned();
         let (value, is_angle) = (system.graph.symbol(*symbol), system.is_angle(*symbol));
         let (text, symbol) = (name.clone(), *symbol);
@@ -323,7 +323,7 @@ fn text(
     held.sort_unstable();
     conditions.extend(held.iter().map(|(name, value)| format!("{name} = {value}")));
     let place = match conditions.is_empty() {
-        true => String::new(), // what is not seen is left out, and nothing else
+        true => String::new(), // what is unobservable is left out, and nothing else
         false => format!(" where {}", conditions.join(", ")),
     };
     let _ = writeln!(out, "\n# the original moves them so, and its outputs are the same");

@@ -1,7 +1,7 @@
-//! Coordinates as expressions in the functions that are seen, on a section: some coordinates, as many as there are unseen
+//! Coordinates as expressions in the observable functions, on a section: some coordinates, as many as there are unobservable
 //! directions, are given constant values, as one counts in units in which `K = 1`.
 //!
-//! Where motions that are not seen take a state to the section, nothing that is seen changes on the way; so what the functions say
+//! Where unobservable motions take a state to the section, no observable function changes on the way; so what the functions say
 //! there of rates and outputs they say everywhere. Whether it is so is proved of the result.
 
 use super::answer::{ObservableFunction, UnseenBlock};

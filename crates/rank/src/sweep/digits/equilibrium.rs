@@ -1,6 +1,6 @@
 //! The equilibrated matrix itself, and not what comes near to it: the limit of what [`equilibrate`] does.
 //!
-//! Sought are positive `p_i`, `q_j` with `sum_j p_i a_ij^2 q_j = columns/rows` for every row and `sum_i p_i a_ij^2 q_j
+//! Wanted are positive `p_i`, `q_j` with `sum_j p_i a_ij^2 q_j = columns/rows` for every row and `sum_i p_i a_ij^2 q_j
 //! = 1` for every column; where they exist `sqrt(p_i q_j) a_ij` is unique (R. Sinkhorn and P. Knopp 1967; M. V. Menon,
 //! "Matrix links, an extremization problem, and the reduction of a non-negative matrix to one with prescribed row and
 //! column sums", Canad. J. Math. 20, 1968). Newton's method finds them, and an interval Newton step after R. Krawczyk
@@ -53,7 +53,7 @@ pub fn equilibrated<A: Enclosing>(
     let (rows, unknowns) = (weights.len(), squares.rows.len() + squares.columns.len() - 1);
     let one = on.rational(&RBig::ONE)?;
     let near_inverse = inverse(on, &derivative(on, &weights, &one)?)?;
-    // the step of Newton's method from p = q = 1, which are what is left to multiply by
+    // the step of Newton's method from p = q = 1, the factors that remain to be multiplied by
     let residual = residual(on, &weights)?;
     let mut step = Vec::with_capacity(unknowns);
     for row in &near_inverse {

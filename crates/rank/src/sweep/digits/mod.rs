@@ -1,8 +1,8 @@
 //! The singular values of a matrix after equilibration, and their condition, right to as many decimal digits as are
 //! wanted.
 //!
-//! Doubles that scale until lengths agree to four digits have no more than four digits to give; here the limit itself
-//! is meant ([`equilibrium`]), and singular values are enclosed ([`decomposition`]). The cheapest numbers that suffice
+//! Doubles scaled until lengths agree to four digits give no more than four digits; here the limit itself
+//! is computed ([`equilibrium`]), and singular values are enclosed ([`decomposition`]). The cheapest numbers that suffice
 //! are taken. Nothing here knows where the matrix comes from.
 
 mod decomposition;
@@ -15,8 +15,8 @@ use decomposition::{approximate_values, enclosed_values};
 use equilibrium::{approximately_equilibrated, equilibrated};
 use numbers::{Approximate, Enclosing};
 use palmistry_math::number::{
-    Arithmetic, DoubleDouble, Enclosures, Floats, Interval, Refusal, Rung, common_decimal, rational_from_f64,
-    round_to_decimal,
+    Arithmetic, DoubleDouble, Enclosures, Floats, Interval, NumberType, Refusal, common_decimal,
+    rational_from_f64, round_to_decimal,
 };
 
 /// More digits than this are not asked for.
@@ -37,11 +37,11 @@ pub struct Digits {
     pub values: Vec<String>,
     /// The largest over the smallest.
     pub condition: String,
-    /// Whether the digits are certain, or two rungs of the ladder agree on them.
+    /// Whether the digits are certain, or two number types agree on them.
     pub certainty: Certainty,
     /// The numbers that sufficed.
-    pub rung: Rung,
-    /// How many rungs had been tried before and did not suffice.
+    pub number_type: NumberType,
+    /// How many number types had been tried before and did not suffice.
     pub climbed: usize,
 }
 
@@ -112,20 +112,20 @@ pub trait Matrices {
 pub fn digits_of<M: Matrices>(matrix: &M, digits: usize, wanted: Certainty) -> Result<Digits, NoDigits> {
     let digits = digits.clamp(1, MOST_DIGITS);
     let mut climbed = 0;
-    let found = |(values, condition), certainty, rung, climbed| {
-        Ok(Digits { digits, values, condition, certainty, rung, climbed })
+    let found = |(values, condition), certainty, number_type, climbed| {
+        Ok(Digits { digits, values, condition, certainty, number_type, climbed })
     };
     if digits <= DIGITS_OF_A_DOUBLE {
         if wanted == Certainty::Computed {
             if let Some(agreed) = agreed(matrix, digits) {
-                return found(agreed, Certainty::Computed, Rung::DoubleDoubles, climbed);
+                return found(agreed, Certainty::Computed, NumberType::DoubleDoubles, climbed);
             }
             climbed += 1;
         }
         if let Ok(ends) = enclosed(matrix, Floats::<Interval>::new())
             && let Some(decimals) = decimals(&ends, digits)
         {
-            return found(decimals, Certainty::Certified, Rung::Intervals, climbed);
+            return found(decimals, Certainty::Certified, NumberType::Intervals, climbed);
         }
         climbed += 1;
     }
@@ -134,7 +134,7 @@ pub fn digits_of<M: Matrices>(matrix: &M, digits: usize, wanted: Certainty) -> R
         let complaint = match enclosed(matrix, Enclosures::new(bits)) {
             Ok(ends) => match decimals(&ends, digits) {
                 Some(decimals) => {
-                    return found(decimals, Certainty::Certified, Rung::Enclosures(bits), climbed);
+                    return found(decimals, Certainty::Certified, NumberType::Enclosures(bits), climbed);
                 }
                 None => NoDigits::NotFixed { bits },
             },

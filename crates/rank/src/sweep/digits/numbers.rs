@@ -1,4 +1,4 @@
-//! What is asked of numbers in which singular values are sought to many digits.
+//! What is asked of numbers in which singular values are computed to many digits.
 
 use dashu::rational::RBig;
 use palmistry_math::number::{

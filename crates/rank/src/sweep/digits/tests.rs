@@ -27,7 +27,7 @@ fn digits_are_those_of_the_limit_of_scaling() {
         ]
     );
     assert_eq!(found.condition, "3.692341100709919235347155813511582841515");
-    assert_eq!((found.certainty, found.rung), (Certainty::Certified, Rung::Enclosures(204)));
+    assert_eq!((found.certainty, found.number_type), (Certainty::Certified, NumberType::Enclosures(204)));
     // more rows than columns
     let found = digits_of(&integers(&[[1, 2], [3, 5], [7, -11]]), 40, Certainty::Certified).unwrap();
     assert_eq!(
@@ -42,22 +42,26 @@ fn digits_are_those_of_the_limit_of_scaling() {
 #[test]
 fn two_by_two_in_closed_form_by_the_cheapest_numbers() {
     let matrix = integers(&[[4, 1], [1, 1]]);
-    for (digits, wanted, certainty, rung, climbed) in [
-        (12, Certainty::Computed, Certainty::Computed, Rung::DoubleDoubles, 0),
-        (12, Certainty::Certified, Certainty::Certified, Rung::Intervals, 0),
-        (30, Certainty::Computed, Certainty::Certified, Rung::Enclosures(169), 0),
-        (30, Certainty::Certified, Certainty::Certified, Rung::Enclosures(169), 0),
+    for (digits, wanted, certainty, number_type, climbed) in [
+        (12, Certainty::Computed, Certainty::Computed, NumberType::DoubleDoubles, 0),
+        (12, Certainty::Certified, Certainty::Certified, NumberType::Intervals, 0),
+        (30, Certainty::Computed, Certainty::Certified, NumberType::Enclosures(169), 0),
+        (30, Certainty::Certified, Certainty::Certified, NumberType::Enclosures(169), 0),
     ] {
         let found = digits_of(&matrix, digits, wanted).unwrap();
-        assert_eq!((found.certainty, found.rung, found.climbed), (certainty, rung, climbed), "{digits}");
+        assert_eq!(
+            (found.certainty, found.number_type, found.climbed),
+            (certainty, number_type, climbed),
+            "{digits}"
+        );
         let root = parse("1.341640786499873817845504201238765741264");
         assert_eq!(found.values[0], round_to_decimal(&root, digits)); // mpmath
         assert_eq!(found.values[1], round_to_decimal(&(root / RBig::from(3)), digits));
         assert_eq!(found.condition.parse::<f64>(), Ok(3.0));
     }
-    // what doubles cannot fix is climbed past: fifteen digits are too many for intervals of doubles
+    // what doubles cannot fix is escalated: fifteen digits are too many for intervals of doubles
     let found = digits_of(&matrix, 15, Certainty::Certified).unwrap();
-    assert_eq!((found.rung, found.climbed), (Rung::Enclosures(116), 1));
+    assert_eq!((found.number_type, found.climbed), (NumberType::Enclosures(116), 1));
 }
 
 fn parse(text: &str) -> RBig {

@@ -1,6 +1,6 @@
 //! Equilibration of many matrices at once, lane by lane.
 //!
-//! Sought are positive numbers `r_i`, `c_j` with
+//! Wanted are positive numbers `r_i`, `c_j` with
 //!
 //! `sum_j (r_i w_ij c_j)^2 = columns/rows` for every row and `sum_i (r_i w_ij c_j)^2 = 1` for every column,
 //!

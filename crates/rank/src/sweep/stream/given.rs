@@ -50,7 +50,8 @@ pub enum StatesError {
 }
 
 impl Stream {
-    /// What has to be said of a state, in this order; everything else follows from it or has one value.
+    /// The coordinates that have to be given for a state, in this order; all others follow from these or have one
+    /// value.
     pub fn coordinates(&self) -> impl Iterator<Item = Symbol> + '_ {
         self.axes.iter().map(|axis| axis.symbol)
     }
@@ -152,7 +153,7 @@ impl Given<'_> {
     }
 }
 
-/// The same words as [`StreamReport`] counts.
+/// The same cases as [`StreamReport`] counts.
 fn verdict(report: &StreamReport, found: &super::decide::Found, lane: usize, finite: bool) -> StateVerdict {
     if !finite {
         StateVerdict::NotFinite
@@ -186,7 +187,7 @@ fn value_of<N: Lanes>(function: AxisFunction, states: &[&[f64]], first: usize, n
     }
 }
 
-/// What is not a number is written as [`f64::NAN`], whatever bits it has: they tell which instructions made it.
+/// What is not a number is written as [`f64::NAN`], whatever bits it has: they depend on which instructions made it.
 #[inline(always)]
 fn write<L: Lanes>(values: &[L], arrays: &mut [Vec<f64>], range: std::ops::Range<usize>) {
     let mut room = [0.0; MOST_LANES];

@@ -14,7 +14,7 @@
 
 use palmistry_math::number::{LaneTask, Lanes};
 
-/// Two columns are orthogonal when the square of the cosine between them is below this. The sweep in which that is seen
+/// Two columns are orthogonal when the square of the cosine between them is below this. The sweep in which that is found
 /// is the last: convergence is quadratic, and that very sweep squares the cosines once more.
 const ORTHOGONAL: f64 = 5.6e-17; // 2^-54
 
@@ -171,7 +171,7 @@ struct Pair<'m, L> {
     squares: (L, L),
 }
 
-/// What a rotation leaves.
+/// What a rotation results in.
 struct Rotated<L> {
     squares: (L, L),
     /// One in each lane in which these columns or earlier ones were not nearly orthogonal before.

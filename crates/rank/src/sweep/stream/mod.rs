@@ -3,7 +3,7 @@
 //!
 //! Each state gets a verdict from doubles that know their errors: the entries of the matrix come with rigorous bounds
 //! ([`Bounded`]), elimination with these bounds proves a full rank (*certified*), and singular values after equilibration
-//! tell how far the state is from a lower one (*computed*, where half of the digits are left). What neither decides is
+//! show how far the state is from a lower one (*computed*, where half of the digits are left). What neither decides is
 //! left to slower numbers: its index is handed over, and [`Stream::state`] draws it again, exactly.
 //!
 //! The states are other ones than those of [`Locus::draw`]: they lie on a finer grid.
@@ -52,7 +52,7 @@ pub struct StreamOptions<'a> {
     pub states: u64,
     /// The seed from which they are drawn.
     pub seed: u64,
-    /// Whether a rank that is merely computed will do.
+    /// How certain a rank has to be: whether a merely computed one will do.
     pub wanted: Certainty,
     /// Set from outside to stop early; what was found is kept.
     pub interrupt: &'a AtomicBool,

@@ -4,7 +4,7 @@ use super::decide::Found;
 use crate::sweep::Certainty;
 use std::collections::BTreeMap;
 
-/// Powers of ten of the condition that are told apart; all beyond are counted with the last.
+/// Powers of ten of the condition that are distinguished; all beyond are counted with the last.
 pub const DECADES: usize = 18;
 
 /// What a stream of states came to.

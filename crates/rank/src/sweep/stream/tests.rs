@@ -43,7 +43,7 @@ fn a_stream_finds_the_same_wherever_it_is_cut() {
     const STATES: u64 = 1500;
     let stream = stream();
     let whole = piece(&stream, Instructions::Portable, 0, STATES);
-    // something of everything, and a number for each state that tells one neighbour from another
+    // something of everything, and a number for each state that distinguishes neighbours
     assert!(whole.0.certified > 900 && whole.1.len() > 100, "{whole:?}");
     assert!(whole.0.conditions.iter().filter(|count| **count > 0).count() > 4, "{whole:?}");
     let alone: Vec<(StreamReport, Vec<u64>)> =

@@ -1,4 +1,4 @@
-//! Which body of a library was read: the search for the motion of each, and the residuals of its contacts.
+//! Which body of a library was measured: the search for the motion of each, and the residuals of its contacts.
 
 mod search;
 
@@ -16,10 +16,10 @@ use search::Candidate;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 impl Experiment {
-    /// Which body of the scene's library was read: none where the scene has no library, or it was interrupted.
+    /// Which body of the scene's library was measured: none where the scene has no library, or it was interrupted.
     ///
     /// # Errors
-    /// Where a body is none, or a reading or a constant is missing, with the place in the scene.
+    /// Where the shape of a body is invalid, or a measurement or a constant is missing, with the place in the scene.
     pub fn recognise(&self, interrupt: &AtomicBool) -> Result<Option<Recognition>, SceneError> {
         let library = &self.scene.observer.library;
         if library.is_empty() {
@@ -43,18 +43,18 @@ impl Experiment {
         Ok(Some(Recognition::of(bodies)))
     }
 
-    /// All readings of both contacts and of the palms.
+    /// All measurements of both contacts and of the palms.
     fn library_record(&self) -> Result<WholeRecord, SceneError> {
         let place = |message: String, help: &str| {
             self.scene.error_at("observer.library", message, "these bodies", help)
         };
         let known = &self.question.known;
-        let readings =
+        let measurements =
             palm_measurements(&self.scene, &self.system, known, &self.signals, 1).map_err(|name| {
                 let help = "give it under `known`, or hand over a column of that name";
                 place(format!("without '{name}' no body is recognised"), help)
             })?;
-        if readings.palms.iter().any(|palm| *palm != Palm::Flat) {
+        if measurements.palms.iter().any(|palm| *palm != Palm::Flat) {
             let message = "bodies are recognised between flat palms, and these are circular";
             return Err(place(message.to_owned(), "leave the library out"));
         }

@@ -1,6 +1,6 @@
-//! How a body of known shape moved between two flat palms, if it is the one that was read: its angle and its rate at the first sample.
+//! The motion of a body of known shape between two flat palms: its angle and its rate at the first sample that fit the measurements best.
 //!
-//! The shape gives both contacts from one angle, so that a sample by itself leaves a few angles, and two samples a few rates. From those that explain the beginning best Levenberg and Marquardt's method goes
+//! The shape gives both contacts from one angle, so that a single sample admits a few angles, and two samples a few rates. From those that explain the first rows best, Levenberg and Marquardt's method goes
 //! on to more and more of the record, by the law of motion that the reconstruction of unknown bodies has.
 
 use super::super::law::{Pose, pose};
@@ -14,25 +14,25 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Angles that are tried at a sample.
 const ANGLES: usize = 720;
 
-/// So many of the angles that explain a sample best go on.
+/// This many of the angles that explain a sample best go on.
 const KEPT_ANGLES: usize = 6;
 
 /// Rates on the grid, and the fastest of them in units of `sqrt(g/R)`.
 const RATES: usize = 11;
 const FASTEST: f64 = 2.0;
 
-/// The first rows, by which beginnings are sorted: this part of the record, and no fewer.
+/// The first rows, by which initial values are sorted: this fraction of the record, and no fewer.
 const FIRST: f64 = 0.06;
 const FEWEST: usize = 8;
 
-/// So many beginnings are let go, and so many of them on to the whole record.
+/// This many initial values are optimised, and this many of them on the whole record.
 const BEGUN: usize = 10;
 const KEPT: usize = 3;
 
 /// Parts of the record that are explained one after the other.
 const PARTS: [f64; 4] = [0.15, 0.3, 0.6, 1.0];
 
-/// Steps for one part at most; the last lowers the sum of the squares by less than this part of it.
+/// Steps for one part at most; the last lowers the sum of the squares by less than this fraction of it.
 const STEPS: usize = 30;
 const SETTLED: f64 = 1e-9;
 
@@ -42,7 +42,7 @@ const DIFFERENCE: f64 = 1e-6;
 /// The tolerance of the integration.
 const TOLERANCE: f64 = 1e-11;
 
-/// A body that may have been read.
+/// A body that may have been measured.
 pub(super) struct Candidate<'a> {
     pub record: &'a WholeRecord,
     pub shape: &'a Shape,
@@ -55,7 +55,7 @@ pub(super) struct Candidate<'a> {
 pub(super) struct End {
     /// The angle in rad and the rate in rad/s, at the first sample.
     pub first: Vector2<f64>,
-    /// The sum of the squares of expected minus read, in units of the stated deviation.
+    /// The sum of the squares of expected minus measured, in units of the stated deviation.
     pub cost: f64,
     /// The normal equations' matrix there.
     pub matrix: Matrix2<f64>,
@@ -68,7 +68,7 @@ impl Candidate<'_> {
         pose(&palms, &support, rate, self.gyration, self.record.gravity)
     }
 
-    /// Expected minus read of both contacts over so many rows, in m; none where the motion cannot be followed.
+    /// Expected minus measured of both contacts over so many rows, in m; none where the motion cannot be followed.
     pub fn differences(&self, first: &Vector2<f64>, rows: usize) -> Option<DVector<f64>> {
         let record = self.record;
         let law = |time: f64, y: &[f64], dy: &mut [f64]| {
@@ -91,7 +91,7 @@ impl Candidate<'_> {
         Some(self.differences(first, rows)?.norm_squared() / self.record.sigma.powi(2))
     }
 
-    /// The angles that explain a row best, each the best one near by.
+    /// The angles that explain a row best, each a local minimum.
     fn angles(&self, row: usize) -> Vec<f64> {
         let time = self.record.times[row];
         let off = |angle: f64| -> f64 {

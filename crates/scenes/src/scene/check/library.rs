@@ -1,4 +1,4 @@
-//! Known bodies among which one is sought.
+//! The library of known bodies for recognition.
 
 use super::super::robot::SimulatedRobot;
 use super::super::simulated::LibraryBody;

@@ -1,4 +1,4 @@
-//! What is to be found out, and the studies.
+//! The observer's settings, and the studies.
 
 use super::super::keys::{GuessKeys, ModeKeys, ObserverKeys};
 use super::super::{CurvatureStudy, Guess, Method, ModeSettings, ObserverSettings, Study};
@@ -12,7 +12,7 @@ const MOST_BOUNDS: usize = 1_000_000;
 /// The most first guesses that a study may try.
 const MOST_GUESSES: usize = 10_000_000;
 
-/// The method that is taken where none is named: from a guess the shortest way, from nowhere in particular the one that arrives most often (the book's comparison of observers).
+/// The method where none is named: the shortest search from a guess; without one, the method that converges most often (the book's comparison of observers).
 fn default_method(guess: &Guess) -> Method {
     match guess {
         Guess::Sample => Method::MultipleShooting,
@@ -55,7 +55,7 @@ impl Checks<'_> {
         let window = keys.window.unwrap_or(samples.min(80));
         self.count("observer.window", window, 2..=samples)?;
         self.count("observer.steps", keys.steps, 1..=1000)?;
-        self.positive("observer.blind", keys.blind, "")?;
+        self.positive("observer.unobservable_above", keys.unobservable_above, "")?;
         self.count("observer.shooting.segments", keys.shooting.segments, 1..=1000)?;
         self.count("observer.shooting.starts", keys.shooting.starts, 1..=1000)?;
         self.not_negative("observer.kalman.process_noise", keys.kalman.process_noise, "")?;
@@ -107,8 +107,8 @@ impl Checks<'_> {
             clamp: keys.clamp,
             window,
             steps: keys.steps,
-            when_blind: keys.when_blind,
-            blind: keys.blind,
+            when_unobservable: keys.when_unobservable,
+            unobservable_above: keys.unobservable_above,
             shooting: keys.shooting,
             kalman: keys.kalman,
             unscented: keys.unscented,
@@ -140,7 +140,7 @@ impl Checks<'_> {
         let guess = match keys.guess {
             Some(GuessKeys::Values(values)) => values,
             None => BTreeMap::new(),
-            // the middle of the sample box is where a mode begins of which no values are given
+            // a mode without a value starts in the middle of the sample box
             Some(GuessKeys::Word(word)) if word == "sample" => BTreeMap::new(),
             Some(GuessKeys::Word(word)) => {
                 let help = "write guess = \"sample\" (the middle of the sample box), or a table of values";
@@ -159,7 +159,7 @@ impl Checks<'_> {
         Ok(ModeSettings { name, model, estimate, known, inputs, bounds, guess })
     }
 
-    /// What is asked of the estimates of windows.
+    /// The settings of the estimates by windows.
     fn estimation(&self, keys: &ObserverKeys, source: Source) -> Result<(), Problem> {
         for (name, [low, high]) in &keys.bounds {
             let place = format!("observer.bounds.{name}");
@@ -204,7 +204,7 @@ impl Checks<'_> {
                 let help = "write guess = \"none\", guess = \"sample\" (the middle of the sample box), or a table of values";
                 Err(self.wrong("observer.guess", format!("'{word}' is no first guess"), help))
             }
-            // a body between palms tells its state by itself
+            // a body between palms needs no guess
             (None, None) if source.has_palms => Ok(Guess::None),
             (None, None) => Ok(Guess::Sample),
             (None, Some(off)) => {
@@ -222,7 +222,7 @@ impl Checks<'_> {
                     self.sought(&place, name, estimate)?;
                     self.finite(&place, *value)?;
                 }
-                // gains and biases have one by themselves
+                // gains and biases have a default guess
                 let is_missing =
                     |name: &&String| !values.contains_key(*name) && CalibrationKind::of(name).is_none();
                 if let Some(name) = estimate.iter().find(is_missing) {
@@ -235,7 +235,7 @@ impl Checks<'_> {
         }
     }
 
-    /// A name that has to be among those that are sought.
+    /// A name that has to be among the estimated ones.
     fn sought(&self, place: &str, name: &str, estimate: &[String]) -> Result<(), Problem> {
         if estimate.iter().any(|sought| sought == name) {
             return Ok(());

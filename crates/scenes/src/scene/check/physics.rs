@@ -9,7 +9,7 @@ use palmistry_bodies::mechanics::moving::{Drive, Oscillation};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-/// The largest delay, in steps of time: eight samples carry a curve so far beyond the first.
+/// The largest delay, in steps of time: eight samples extrapolate a curve this far before the first.
 pub(super) const MOST_DELAY: f64 = 4.0;
 
 impl Checks<'_> {
@@ -52,7 +52,7 @@ impl Checks<'_> {
         Ok(())
     }
 
-    /// What a late sensor reads at the first sample lies before the simulation: it is extrapolated, and not far.
+    /// The value of a late sensor at the first sample lies before the simulation: it is extrapolated, and not far.
     pub(super) fn delays(
         &self,
         channels: &BTreeMap<String, Channel>,
@@ -82,7 +82,7 @@ impl Checks<'_> {
         Err(self.wrong("sensor.jitter", message, help))
     }
 
-    /// Duration and samples, if anything is said of what is simulated: then both have to be there.
+    /// Duration and samples, if anything is simulated: then both have to be there.
     pub(super) fn span(
         &self,
         duration: Option<f64>,
@@ -154,7 +154,7 @@ impl Checks<'_> {
         Ok(Simulated { duration, samples, body, palms: self.palms(palms)? })
     }
 
-    /// A system that moves by its own equations, if anything is said of one.
+    /// A system that moves by its own equations, if one is described.
     pub(super) fn system(
         &self,
         span: Option<(f64, usize)>,

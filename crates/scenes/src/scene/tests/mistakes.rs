@@ -93,7 +93,13 @@ fn every_value_is_checked_and_its_place_marked() {
         ),
         ("window = 60", "window = 402", "'window' cannot be 402", "402", "from 2 to 401"),
         ("steps = 4", "steps = 0", "'steps' cannot be 0", "0", "from 1"),
-        ("blind = 0.5", "blind = 0", "'blind' has to be positive", "0", ""),
+        (
+            "unobservable_above = 0.5",
+            "unobservable_above = 0",
+            "'unobservable_above' has to be positive",
+            "0",
+            "",
+        ),
         ("gain = 30", "gain = -1", "'gain' has to be positive", "-1", "1/s"),
         ("levels = [1e-5, 1e-4]", "levels = []", "no level of noise", "[]", "in m"),
         (

@@ -16,7 +16,7 @@ pub enum Approach {
 }
 
 impl Approach {
-    /// In words.
+    /// Its title.
     pub fn title(&self) -> &str {
         match self {
             Approach::Set { title, .. } | Approach::Infinity { title, .. } => title,

@@ -22,7 +22,7 @@ const OTHER_UNITS: [&[(Base, &str, i32)]; 10] = [
     &[(Base::LuminousIntensity, "millicandela", 3)],
 ];
 
-/// The dimensions of what some rows depend on, states included, where a change of units is told by them.
+/// The dimensions of what some rows depend on, states included, if the declared dimensions determine a change of units.
 fn dimensioned<'s>(system: &'s System, rows: &[NodeId]) -> Option<Vec<(Symbol, &'s Dimension)>> {
     if !system.dimensions_tell_units() {
         return None;
@@ -52,7 +52,7 @@ fn whole(dimensions: &[(Symbol, &Dimension)], base: Base) -> Option<(i32, Vec<(S
 }
 
 /// The states in other units: for each change its name, and what becomes of each symbol. Nothing where the file does not
-/// declare enough to tell.
+/// declare enough dimensions.
 pub fn units(system: &System, rows: &[NodeId]) -> Option<Vec<(String, Rescaling)>> {
     let dimensions = dimensioned(system, rows)?;
     let mut found: Vec<(String, Rescaling)> = Vec::new();

@@ -86,7 +86,7 @@ impl Subject {
                     let worst = self.worst(&picked, truth, column, relative_error);
                     (self.by_jacobi(picked, 2f64.powi(-104)), worst)
                 }),
-                Way::Ladder => {
+                Way::Escalation => {
                     StressFinding { verdict: self.by_ladder(decider, state, &intervals), digits: None }
                 }
             })
@@ -165,8 +165,8 @@ impl Subject {
         by_spectrum(singular_values(middles, radii, self.reduction.columns.len()), self.reduction.eliminated)
     }
 
-    /// Intervals, in whatever units, if they prove the full rank; else what the ladder's other rungs find, which are exact,
-    /// so that units (which multiply a column) say nothing to them.
+    /// Intervals, in whatever units, if they prove the full rank; else the further number types of the [`RankDecider`], which are exact,
+    /// so that units (which multiply a column) do not matter to them.
     fn by_ladder(
         &self,
         decider: &RankDecider<'_>,
@@ -189,7 +189,7 @@ impl Subject {
         let arithmetic = Floats::<Interval>::new();
         let full = self.reduction.rows.len().min(self.reduction.columns.len());
         match certain_rank(&arithmetic, self.matrix(remaining), |v| v.mid().abs() / v.rad()) {
-            // no row or column is left: the bound is the rank
+            // no row or column remains: the bound is the rank
             Ok(rank) if rank == full => StressVerdict::Rank(self.reduction.eliminated + rank),
             Ok(rank) => StressVerdict::AtLeast(self.reduction.eliminated + rank),
             Err(refusal) => StressVerdict::Refused(refusal.to_string()),

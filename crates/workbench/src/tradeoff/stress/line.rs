@@ -36,13 +36,13 @@ pub struct First {
 /// What one way says at states on the set itself, where the rank is another one than around it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OnTheSet {
-    /// The exact rank there.
+    /// The number of states at which it gives the exact rank.
     pub right: usize,
-    /// Another one.
+    /// The number of states at which it gives another rank.
     pub wrong: usize,
-    /// That it cannot tell.
+    /// The number of states at which it is undecided.
     pub open: usize,
-    /// Nothing, by name.
+    /// The number of states at which it refuses, naming what stands in the way.
     pub refused: usize,
 }
 
@@ -70,7 +70,7 @@ impl OnTheSet {
     }
 }
 
-/// What one way makes of a line.
+/// The results of one way along a line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WayOnLine {
     pub way: Way,
@@ -82,11 +82,11 @@ pub struct WayOnLine {
     pub wrong: Option<First>,
     /// Where more than half of the digits are first lost.
     pub lost: Option<First>,
-    /// Where it first says that it cannot tell.
+    /// Where it is first undecided.
     pub open: Option<First>,
     /// Where it first refuses, and what it names.
     pub refused: Option<First>,
-    /// What it says on the set.
+    /// Its verdicts on the set.
     pub on_the_set: OnTheSet,
 }
 
@@ -275,7 +275,7 @@ impl Prepared {
 }
 
 impl StressFinding {
-    /// The verdict in words.
+    /// The verdict as text.
     pub fn said(&self) -> String {
         match &self.verdict {
             StressVerdict::Rank(rank) => format!("rank {rank}"),
@@ -290,7 +290,7 @@ impl StressFinding {
             Way::Single => subject.rounded_to_zero::<f32>(state),
             Way::Customary | Way::Double => subject.rounded_to_zero::<f64>(state),
             Way::DoubleDouble => subject.rounded_to_zero::<DoubleDouble>(state),
-            Way::AlwaysFull | Way::Radii | Way::Interval | Way::Ladder => None,
+            Way::AlwaysFull | Way::Radii | Way::Interval | Way::Escalation => None,
         }
     }
 }

@@ -42,12 +42,12 @@ pub enum Way {
     Double,
     /// The same with the errors that intervals know: singular values that the errors may make zero do not count.
     Radii,
-    /// Intervals of doubles: elimination with certain pivots. It proves a full rank or cannot tell.
+    /// Intervals of doubles: elimination with certain pivots. It proves a full rank or is undecided.
     Interval,
     /// Double-doubles throughout: singular values as for single precision.
     DoubleDouble,
-    /// The ladder of [`RankDecider`](palmistry_rank::sweep::RankDecider), certified: intervals, residues, exact numbers, enclosures.
-    Ladder,
+    /// The number types of [`RankDecider`](palmistry_rank::sweep::RankDecider) in turn, certified: intervals, residues, exact numbers, enclosures.
+    Escalation,
 }
 
 impl Way {
@@ -60,7 +60,7 @@ impl Way {
         Way::Radii,
         Way::Interval,
         Way::DoubleDouble,
-        Way::Ladder,
+        Way::Escalation,
     ];
 
     /// The place in [`Way::ALL`].
@@ -68,7 +68,7 @@ impl Way {
         Way::ALL.iter().position(|way| *way == self).unwrap_or(0)
     }
 
-    /// In a word or two.
+    /// A short name.
     pub fn name(self) -> &'static str {
         match self {
             Way::AlwaysFull => "always full",
@@ -78,7 +78,7 @@ impl Way {
             Way::Radii => "f64 with radii",
             Way::Interval => "intervals",
             Way::DoubleDouble => "double-double",
-            Way::Ladder => "the ladder",
+            Way::Escalation => "escalation",
         }
     }
 
@@ -98,20 +98,20 @@ impl Way {
 pub enum StressVerdict {
     /// The rank.
     Rank(usize),
-    /// Certainly at least so much, and it cannot tell whether more.
+    /// Certainly at least this rank; whether more is undecided.
     AtLeast(usize),
     /// No rank, and the name of what stood in the way: the divisor that is zero, the operation that overflowed.
     Refused(String),
 }
 
-/// What a verdict is worth, from best to worst.
+/// The quality of a verdict, from best to worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Mark {
     /// The right rank, with at least half of the digits.
     Right,
     /// The right rank, from entries of which one has lost more than half of its digits.
     Lost,
-    /// It says that it cannot tell.
+    /// Undecided.
     Open,
     /// It names what stands in the way.
     Refused,
@@ -120,7 +120,7 @@ pub enum Mark {
 }
 
 impl Mark {
-    /// In a word.
+    /// A short name.
     pub fn name(self) -> &'static str {
         match self {
             Mark::Right => "right",

@@ -25,7 +25,7 @@ const NEAR: [usize; 3] = [10, 20, 30];
 /// For the conditioning so many times the states of the box are drawn: a spectrum costs little.
 const MORE_FOR_CONDITIONING: u64 = 20;
 
-/// How far to go into it.
+/// How many states and points a run takes.
 #[derive(Clone, Copy)]
 pub struct StressOptions<'a> {
     pub seed: u64,

@@ -14,13 +14,13 @@ const STEP: usize = 10;
 /// What is scaled: symbols, each by a power of the factor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Quantity {
-    /// In words: a symbol's name, or a unit.
+    /// A symbol's name, or a unit.
     pub name: String,
     /// The symbols that change, and the power of the factor by which each does.
     pub powers: Vec<(Symbol, i32)>,
 }
 
-/// What one way makes of a quantity that grows and shrinks.
+/// The results of one way for a quantity that is scaled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WayScaled {
     pub way: Way,
@@ -33,7 +33,7 @@ pub struct WayScaled {
     pub above: Option<String>,
 }
 
-/// A quantity and what every way makes of it.
+/// A quantity that is scaled, and the results of every way.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scaling {
     pub quantity: String,

@@ -37,7 +37,7 @@ pub struct Subject {
     field: PrimeField,
 }
 
-/// What is so at a state.
+/// The certified facts about a state.
 #[derive(Clone, Debug)]
 pub struct Truth {
     pub rank: usize,
@@ -81,7 +81,7 @@ impl Subject {
         Ok(Subject { system: system.clone(), expanded, program, reduction, remaining, columns, field })
     }
 
-    /// The ladder for these rows, certified.
+    /// The decider for these rows, which escalates through the number types, certified.
     pub(super) fn decider(&self) -> RankDecider<'_> {
         let rows = DecidedRows { quick: &self.expanded, all: &self.expanded, columns: self.columns };
         let is_angle = |symbol| self.system.is_angle(symbol);

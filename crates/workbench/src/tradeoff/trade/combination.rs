@@ -28,7 +28,7 @@ impl Number {
         Number::Rational,
     ];
 
-    /// In a word.
+    /// A short name.
     pub fn name(self) -> &'static str {
         match self {
             Number::Single => "f32",
@@ -73,7 +73,7 @@ impl Derivative {
         Derivative::Expanded,
     ];
 
-    /// In a few words.
+    /// A short name.
     pub fn name(self) -> &'static str {
         match self {
             Derivative::Graph => "graph",
@@ -124,7 +124,7 @@ impl RankMethod {
         RankMethod::BoundedElimination,
     ];
 
-    /// In a few words.
+    /// A short name.
     pub fn name(self) -> &'static str {
         match self {
             RankMethod::SvdWhole => "SVD, whole matrix",
@@ -203,7 +203,7 @@ pub struct Combination {
     pub digits: CorrectDigits,
     /// Verdicts that are not the certified rank.
     pub wrong: u64,
-    /// States at which it says that it cannot tell.
+    /// States at which it is undecided.
     pub undecided: u64,
     /// States at which there was no matrix, or its decomposition gave up.
     pub failed: u64,
@@ -235,14 +235,14 @@ pub struct CombinationLeftOut {
 pub struct Trade {
     pub file: String,
     pub title: String,
-    /// The fields of which words are made.
+    /// The fields of the Lie derivatives.
     pub fields: Vec<FieldRole>,
     /// What is drawn from a range that the file does not give, and this range.
     pub by_default: Vec<(String, Range)>,
     /// Where the rows come from.
     pub rows: String,
-    /// The words whose differentials the rows are, where that is known.
-    pub words: Vec<String>,
+    /// The Lie derivatives whose differentials the rows are, where they are known.
+    pub lie_derivatives: Vec<String>,
     /// Rows and columns of the matrix.
     pub size: (usize, usize),
     /// How many of its entries are no constants.

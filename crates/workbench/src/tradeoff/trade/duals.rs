@@ -1,6 +1,6 @@
-//! The differential of a Lie derivative by num-dual's dual numbers, one within the other: each field of a word is a
+//! The differential of a Lie derivative by num-dual's dual numbers, one within the other: each field is a
 //! level, and at the bottom is a vector of partial derivatives. The types are fixed when this is compiled, so that
-//! nothing is allocated on the way, and a word can be no longer than there are types for.
+//! nothing is allocated on the way, and the order can be no higher than there are types for.
 
 use super::ways::{Way, points, rows};
 use super::work::Work;
@@ -12,7 +12,7 @@ use palmistry_math::number::{Differentiable, Duals, RealNumber, Refusal};
 
 /// So many partial derivatives are taken at once.
 const WIDTH: usize = 4;
-/// The longest word for which there are types.
+/// The highest order for which there are types.
 const LONGEST: usize = 3;
 
 /// Takes Lie derivatives at points of numbers `D`.
@@ -67,7 +67,7 @@ fn load<D: Differentiable>(points: &PointPrograms) -> Result<Bottom<'_, D>, Refu
 /// Dual numbers over `T`; `number` makes one from the ends of an enclosure.
 ///
 /// # Errors
-/// In words: rows that are no differentials of words, words that are too long, constants without an image.
+/// In words: rows that are no differentials of Lie derivatives, orders that are too high, constants without an image.
 pub(super) fn duals<'w, T>(work: &'w Work, number: impl Fn(&RBig, &RBig) -> T) -> Result<Way<'w, T>, String>
 where
     T: RealNumber + DualNum,

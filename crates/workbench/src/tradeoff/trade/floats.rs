@@ -17,10 +17,10 @@ use num_dual::DualNum;
 use palmistry_math::number::{Bounded, DoubleDouble, Floats, Interval, RealNumber, rational_from_f64};
 use std::sync::Arc;
 
-/// The distance between one and the next double-double that every operation can tell apart (its error bound).
+/// The distance between one and the next double-double that every operation can distinguish (its error bound).
 const DOUBLE_DOUBLE_SPACING: f64 = 1.0 / (1u128 << 102) as f64;
 
-/// The decimal digits that numbers have which lie `spacing` apart at one, rounded to nearest.
+/// The decimal digits of numbers with the given spacing at one, rounded to nearest.
 fn digits(spacing: f64) -> f64 {
     -(spacing / 2.0).log10()
 }

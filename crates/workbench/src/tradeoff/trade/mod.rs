@@ -3,7 +3,7 @@
 //!
 //! The states are drawn from the system's sample box and nowhere else; on the way into a singular set all of this looks
 //! different. At each of them the entries of the matrix of differentials are known for certain, and so is its rank.
-//! [`trade`] tells how many digits of the entries each way gets right, how often each combination misreports the rank,
+//! [`trade`] measures how many digits of the entries each way gets right, how often each combination misreports the rank,
 //! and what a state costs; [`Combination::on_front`] marks those that no other beats.
 
 mod block;
@@ -36,7 +36,7 @@ use std::time::Instant;
 use study::Findings;
 use work::Work;
 
-/// What is asked.
+/// The settings of [`trade`].
 pub struct TradeQuestion<'a> {
     /// States drawn from the sample box.
     pub samples: u64,
@@ -96,7 +96,7 @@ pub fn trade(system: &System, question: &TradeQuestion<'_>) -> Result<Trade, Str
         fields: work.system.roles(),
         by_default: work.system.ranges_by_default(),
         rows: work.origin.clone(),
-        words: work.words.clone(),
+        lie_derivatives: work.lie_derivatives.clone(),
         size: (work.rows, work.columns),
         varying: work.varying.len(),
         block: (work.block.rows, work.block.columns),

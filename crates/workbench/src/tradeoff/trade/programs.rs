@@ -4,7 +4,7 @@ use crate::tradeoff::point_programs::PointPrograms;
 use crate::tradeoff::term_by_term::term_by_term;
 use palmistry_lang::System;
 use palmistry_math::expression::{BlockProgram, NodeId, Program, expand_angles, gradient};
-use palmistry_rank::observability::{Word, lie_derivative_by_series};
+use palmistry_rank::observability::{LieDerivative, lie_derivative_by_series};
 
 /// A multiplied-out form longer than this is said to be too large.
 const MOST_MONOMIALS: usize = 20_000;
@@ -12,7 +12,7 @@ const MOST_MONOMIALS: usize = 20_000;
 /// Where an entry that varies is found by ways that take whole rows.
 #[derive(Clone, Debug)]
 pub(super) struct RowPlan {
-    /// The fields of the word of each row that has entries that vary, and its output.
+    /// The fields and the output of the Lie derivative of each row that has entries that vary.
     pub rows: Vec<(Vec<usize>, usize)>,
     /// Row (of these) and column of each entry that varies.
     pub picks: Vec<(usize, usize)>,
@@ -37,11 +37,12 @@ impl Programs {
         system: &mut System,
         entries: &[NodeId],
         varying: &[usize],
-        words: &Result<Vec<Word>, String>,
+        lie_derivatives: &Result<Vec<LieDerivative>, String>,
     ) -> Programs {
         let is_angle = &system.angle_test();
         let roots: Vec<NodeId> = varying.iter().map(|place| entries[*place]).collect();
-        let by_series = words.as_ref().map_err(Clone::clone).and_then(|words| series(system, words, varying));
+        let by_series =
+            lie_derivatives.as_ref().map_err(Clone::clone).and_then(|words| series(system, words, varying));
         let expanded = term_by_term(&mut system.graph, &roots, is_angle, MOST_MONOMIALS);
         let compile = |roots: &[NodeId]| Program::new(&system.graph, roots, is_angle);
         let columns = system.unknown_count();
@@ -52,12 +53,12 @@ impl Programs {
             series: by_series.map(|roots| compile(&roots)),
             expanded: expanded.map(|roots| compile(&roots)),
             points: PointPrograms::new(system, &outputs),
-            plan: words.as_ref().map(|words| plan(words, varying, columns)).map_err(Clone::clone),
+            plan: lie_derivatives.as_ref().map(|words| plan(words, varying, columns)).map_err(Clone::clone),
         }
     }
 }
 
-fn series(system: &mut System, words: &[Word], varying: &[usize]) -> Result<Vec<NodeId>, String> {
+fn series(system: &mut System, words: &[LieDerivative], varying: &[usize]) -> Result<Vec<NodeId>, String> {
     let columns = system.unknown_count();
     let plan = plan(words, varying, columns);
     let states = system.unknowns();
@@ -72,7 +73,7 @@ fn series(system: &mut System, words: &[Word], varying: &[usize]) -> Result<Vec<
     Ok(expand_angles(&mut system.graph, &picked, is_angle))
 }
 
-fn plan(words: &[Word], varying: &[usize], columns: usize) -> RowPlan {
+fn plan(words: &[LieDerivative], varying: &[usize], columns: usize) -> RowPlan {
     let mut kept: Vec<usize> = varying.iter().map(|place| place / columns).collect();
     kept.dedup();
     let pick = |place: &usize| (kept.partition_point(|row| *row < place / columns), place % columns);

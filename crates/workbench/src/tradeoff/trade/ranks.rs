@@ -12,7 +12,7 @@ use palmistry_rank::observability::{certain_rank, rank, singular_values};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RankVerdict {
     Rank(usize),
-    /// It knows that it does not know.
+    /// It cannot decide.
     Undecided,
     /// An entry is no number, or the decomposition gave up.
     Failed,
@@ -113,7 +113,7 @@ pub(super) fn equilibrated(block: &[f64], columns: usize) -> RankVerdict {
         .map_or(RankVerdict::Failed, |spectrum| RankVerdict::Rank(spectrum.rank))
 }
 
-/// Elimination with complete pivoting for numbers that no library decomposes, which lie `spacing` apart at one.
+/// Elimination with complete pivoting for numbers that no library decomposes, with the given spacing at one.
 pub(super) fn elimination<T: RealNumber>(block: &[T], columns: usize, spacing: f64) -> RankVerdict {
     let rows: Vec<Vec<T>> = block.chunks(columns).map(<[T]>::to_vec).collect();
     if !block.iter().all(|x| x.is_finite()) {

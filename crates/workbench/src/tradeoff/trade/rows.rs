@@ -2,26 +2,26 @@
 
 use palmistry_lang::{Assignment, System, Value};
 use palmistry_math::expression::NodeId;
-use palmistry_rank::observability::{Codistribution, Length, OWN_ROWS, Word};
+use palmistry_rank::observability::{Codistribution, Length, LieDerivative, OWN_ROWS};
 
 pub(super) struct Rows {
     /// All entries by rows, as they are written.
     pub entries: Vec<NodeId>,
-    /// The words whose differentials the rows are, or why they are not known.
-    pub words: Result<Vec<Word>, String>,
+    /// The Lie derivatives whose differentials the rows are, or why they are not known.
+    pub lie_derivatives: Result<Vec<LieDerivative>, String>,
     /// Where they come from, in words.
     pub origin: String,
 }
 
-/// Words are compared with rows while there are no more of them than this, and while they are no longer than that.
+/// At most this many Lie derivatives are compared with rows, and none of a higher order than the next constant.
 const MOST_WORDS: usize = 600;
 const LONGEST: usize = 6;
 /// Where the rank is short all rows are taken that were looked at, but no more than this for each state.
 const ROWS_A_STATE: usize = 4;
 
 impl Rows {
-    /// The rows of a system: those that it defines, else those that the codistribution needs; where these are fewer than
-    /// there are states, all that were looked at, for a way that is wrong would take them for more.
+    /// The rows of a system: those that it defines, else those that the codistribution needs; where their rank is below the
+    /// number of states, all that were looked at, since a wrong way would take it for higher.
     ///
     /// # Errors
     /// In words, where no row can be evaluated anywhere.
@@ -32,7 +32,11 @@ impl Rows {
         {
             let entries = matrix.entries.clone();
             let words = words_of(system, &entries);
-            return Ok(Rows { entries, words, origin: format!("the file's own '{OWN_ROWS}'") });
+            return Ok(Rows {
+                entries,
+                lie_derivatives: words,
+                origin: format!("the file's own '{OWN_ROWS}'"),
+            });
         }
         let found = Codistribution::new(system, &Assignment::new(), Length::UntilItStops)?;
         let (kept, origin): (Vec<usize>, _) = if found.generic_rank() < columns {
@@ -43,18 +47,18 @@ impl Rows {
         };
         Ok(Rows {
             entries: kept.iter().flat_map(|row| found.rows[*row].iter().copied()).collect(),
-            words: Ok(kept.iter().map(|row| found.words[*row].clone()).collect()),
+            lie_derivatives: Ok(kept.iter().map(|row| found.lie_derivatives[*row].clone()).collect()),
             origin: origin.to_owned(),
         })
     }
 }
 
-/// The words whose differentials some rows are, if they are.
-fn words_of(system: &mut System, entries: &[NodeId]) -> Result<Vec<Word>, String> {
+/// The Lie derivatives whose differentials some rows are, if they are.
+fn words_of(system: &mut System, entries: &[NodeId]) -> Result<Vec<LieDerivative>, String> {
     let rows: Vec<&[NodeId]> = entries.chunks(system.unknown_count()).collect();
-    let mut found: Vec<Option<Word>> = vec![None; rows.len()];
-    let mut words: Vec<(Word, NodeId)> = (0..system.outputs.len())
-        .map(|output| (Word { fields: Vec::new(), output }, system.outputs[output].1))
+    let mut found: Vec<Option<LieDerivative>> = vec![None; rows.len()];
+    let mut words: Vec<(LieDerivative, NodeId)> = (0..system.outputs.len())
+        .map(|output| (LieDerivative { fields: Vec::new(), output }, system.outputs[output].1))
         .collect();
     let (mut count, mut longest) = (0, 0);
     loop {
@@ -80,7 +84,7 @@ fn words_of(system: &mut System, entries: &[NodeId]) -> Result<Vec<Word>, String
             for (word, value) in &words {
                 let derivative = system.lie_derivative(field, *value);
                 let fields = [&[field], word.fields.as_slice()].concat();
-                longer.push((Word { fields, output: word.output }, derivative));
+                longer.push((LieDerivative { fields, output: word.output }, derivative));
             }
         }
         words = longer;

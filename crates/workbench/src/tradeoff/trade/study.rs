@@ -1,4 +1,4 @@
-//! One kind of number with all its ways: what they get right, and the jobs that tell how long they take.
+//! One kind of number with all its ways: what they get right, and the jobs that measure their times.
 
 use super::block::Block;
 use super::combination::{
@@ -142,7 +142,7 @@ impl Findings {
     }
 }
 
-/// Evaluates everything once at all states, on all cores, and leaves the jobs for the timing.
+/// Evaluates everything once at all states, on all cores, and returns the jobs for the timing.
 pub(super) fn study<'s, N: Clone + Send + Sync + 's>(
     work: &Work,
     setup: &'s Setup<'_, N>,

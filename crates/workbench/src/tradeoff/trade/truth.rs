@@ -1,5 +1,5 @@
 //! What is known for certain of a state: by exact arithmetic, or by enclosures that are narrower than any way here can
-//! tell.
+//! distinguish.
 
 use super::block::Block;
 use dashu::rational::RBig;
@@ -88,7 +88,7 @@ fn measured(values: Vec<RBig>, rows: &[usize]) -> Vec<Exact> {
     values.into_iter().enumerate().map(exact).collect()
 }
 
-/// The value of a symbol as an enclosure, angles in radians; `None` where the state says nothing of it.
+/// The value of a symbol as an enclosure, angles in radians; `None` where the state gives none.
 pub(super) fn radians(state: &State, symbol: Symbol) -> Option<(RBig, RBig)> {
     let (sine, cosine) = match state.values.get(&symbol)? {
         Coordinate::Number(value) => return Some((value.clone(), value.clone())),

@@ -69,7 +69,7 @@ pub(super) fn points<N>(work: &Work, number: impl Fn(&RBig, &RBig) -> N) -> Vec<
     work.points.iter().map(point).collect()
 }
 
-/// Row after row by a function that takes the fields of a word, its output, and a point.
+/// Row after row by a function that takes the fields of a Lie derivative, its output, and a point.
 pub(super) fn rows<'w, N: Clone + Send + Sync + 'w>(
     plan: &'w RowPlan,
     points: Vec<Vec<N>>,
@@ -92,7 +92,7 @@ pub(super) fn rows<'w, N: Clone + Send + Sync + 'w>(
 /// Nested differences; the middle of an enclosed angle is taken.
 ///
 /// # Errors
-/// In words: rows that are no differentials of words, constants without an image.
+/// In words: rows that are no differentials of Lie derivatives, constants without an image.
 pub(super) fn differences<'w, T: RealNumber>(
     work: &'w Work,
     difference: FiniteDifference,

@@ -16,9 +16,9 @@ use std::sync::atomic::Ordering;
 
 pub(super) struct Work {
     pub system: System,
-    /// Where the rows come from, and their words where they are known.
+    /// Where the rows come from, and their Lie derivatives where they are known.
     pub origin: String,
-    pub words: Vec<String>,
+    pub lie_derivatives: Vec<String>,
     pub columns: usize,
     pub rows: usize,
     /// The places of the entries that are no constants.
@@ -63,12 +63,12 @@ impl Work {
         mentioned.extend(rates);
         let locus = Locus::new(&mut system, &Branch::default(), &BTreeMap::new(), &mentioned)
             .map_err(|error| error.to_string())?;
-        let programs = Programs::new(&mut system, &entries, &varying, &rows.words);
-        let words = rows.words.iter().flatten().map(|word| word.text(&system)).collect();
+        let programs = Programs::new(&mut system, &entries, &varying, &rows.lie_derivatives);
+        let words = rows.lie_derivatives.iter().flatten().map(|word| word.text(&system)).collect();
         let mut work = Work {
             system,
             origin: rows.origin,
-            words,
+            lie_derivatives: words,
             columns,
             rows: entries.len() / columns,
             varying,

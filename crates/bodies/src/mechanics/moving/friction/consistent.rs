@@ -6,10 +6,10 @@ use crate::mechanics::moving::drive::Drive;
 use crate::mechanics::moving::laws::State;
 use crate::mechanics::moving::scene::MovingScene;
 
-/// A contact rests where it slides more slowly, in m/s: a hundred times what the integration and the search for the moment leave.
+/// A contact rests where it slides more slowly, in m/s: a hundred times the error of the integration and of the search for the moment.
 pub(super) const RESTS: f64 = 1e-10;
 
-/// By how much less than zero an acceleration along the palm may be, in parts of the largest of all, to count as the beginning of a
+/// By how much less than zero an acceleration along the palm may be, relative to the largest of all, to count as the start of a
 /// sliding: where friction has just left its cone it is zero.
 const ROUNDING: f64 = 1e-9;
 
@@ -60,7 +60,7 @@ fn holds(here: &Rubbing, pair: ModePair, rests: [bool; 2]) -> bool {
     pushes && held && begins(0) && begins(1)
 }
 
-/// Whether the palms turn as one and go on to, as far as that is told: what both contacts can stick to.
+/// Whether the palms turn as one and go on to, as far as that is prescribed: what both contacts can stick to.
 fn turn_as_one(scene: &MovingScene, time: f64, state: &State) -> bool {
     match &scene.drive {
         Drive::Prescribed([_, second]) => {

@@ -1,6 +1,6 @@
 //! Newton's and Euler's laws in a pair of modes: linear equations for accelerations and contact forces.
 //!
-//! The body's point at the contact moves, as palm `i` sees it, with `u = c' + omega0 JX - w Jp`, where `X` and `p` are the contact from the
+//! The body's point at the contact moves relative to palm `i` with `u = c' + omega0 JX - w Jp`, where `X` and `p` are the contact from the
 //! centre of mass and from the origin; `t · u` is how fast it slides and `n · u` is zero. In the palm's frame, which turns at `w`,
 //!
 //! ```text
@@ -119,7 +119,7 @@ impl Rubbing {
         let squeeze = scaled(1.0 / between[0].hypot(between[1]), between);
         if stuck && told {
             // four equations for three accelerations, of which one follows from the others where palms turn as one; and three for
-            // four forces: as a beginning neither contact squeezes the body against the other
+            // four forces: at first neither contact squeezes the body against the other
             let mut row = [0.0; UNKNOWNS];
             for (i, sign) in [(0, 1.0), (1, -1.0)] {
                 row[NORMAL + 2 * i] = sign * dot(squeeze, normals[i]);
@@ -180,7 +180,7 @@ impl Rubbing {
 }
 
 /// The squeeze nearest to none with which the forces of both contacts are within their cones, and how far the squeezes that do reach from
-/// the least to the greatest: negative where there is none. Rigid bodies do not tell which of them it is.
+/// the least to the greatest: negative where there is none. For rigid bodies the squeeze is indeterminate.
 fn squeezed(coefficient: f64, forces: [[f64; 2]; 2], by: [[f64; 2]; 2]) -> (f64, f64) {
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
     for i in 0..2 {

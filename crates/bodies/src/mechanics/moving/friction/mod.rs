@@ -5,9 +5,9 @@
 //! (`laws`). A motion stays in its pair until a sliding contact comes to rest or the friction of one that sticks leaves its cone; then every pair
 //! that the velocities allow is tried, and one goes on that is `consistent`: contacts push, friction is within its cone, and what begins to slide does so against its
 //! friction. Where none is, the laws of rigid bodies with friction have no solution (P. Painleve, Lecons sur le frottement, 1895), and the motion ends with
-//! that word.
+//! that verdict.
 //!
-//! Left out: impacts, curved palms, a coefficient that is another one at rest than in motion.
+//! Left out: impacts, curved palms, a static coefficient that differs from the kinetic one.
 
 mod consistent;
 mod laws;

@@ -20,15 +20,15 @@ const ALLOWANCE: Allowance = Allowance { bytes: u64::MAX, nodes: u64::MAX, steps
 /// So many of the longest steps are integrated before the modes are looked at: what lies behind the next change is thrown away.
 const AHEAD: f64 = 64.0;
 
-/// By how much a sliding contact may slide the other way, in m/s, and what sticks leave its cone, in parts of the forces, before it is
-/// seen: ten times what the integration leaves.
+/// By how much a sliding contact may slide the other way, in m/s, and what sticks leave its cone, relative to the forces, before it is
+/// noticed: ten times the error of the integration.
 const SEEN: f64 = 1e-11;
 
 /// A motion with friction.
 #[derive(Clone, Debug)]
 pub struct RubbedMotion {
     pub trajectory: Trajectory,
-    /// From when on which modes held; the first from the beginning.
+    /// From when on which modes held; the first from time zero on.
     pub modes: Vec<(f64, ModePair)>,
 }
 
@@ -39,7 +39,7 @@ impl RubbedMotion {
     }
 }
 
-/// What is integrated: the state, what friction has taken, and the time since the beginning of the integration.
+/// What is integrated: the state, what friction has taken, and the time since the start of the integration.
 type Vector = [f64; 9];
 
 #[derive(Clone, Copy, Debug)]

@@ -17,7 +17,7 @@ fn numbers(at: &Situation) -> Vec<f64> {
     pairs.concat().into_iter().chain([at.alpha0, at.opening]).collect()
 }
 
-/// The laws for palms of any form, on flat ones, against those that were written for flat ones: told angles and torques.
+/// The laws for palms of any form, on flat ones, against those that were written for flat ones: prescribed angles and torques.
 #[test]
 fn the_general_laws_agree_with_those_of_flat_palms() {
     let mut worst = 0.0f64;
@@ -93,7 +93,7 @@ fn motions_between_circles_keep_energy_and_agree_with_the_witness() {
     assert!(worst < 1e-12, "{worst:e}");
 }
 
-/// Motors that push circular palms as the told motion needs it, and from there on otherwise.
+/// Motors that push circular palms as the prescribed motion needs it, and from there on otherwise.
 #[test]
 fn driven_circular_palms_agree_with_the_witness() {
     let mut scene = hollow_swing();

@@ -90,7 +90,7 @@ fn friction_takes_what_is_missing() {
 }
 
 /// Newton's and Euler's laws by central differences of fourth order of the path, within a mode: centre and angle are accelerated by the two
-/// contact forces and gravity. Between palms that are told how to move and such as are driven.
+/// contact forces and gravity. Between palms with prescribed motion and driven ones.
 #[test]
 fn momentum_is_what_the_contacts_give() {
     for (scene, coefficient) in [(driven(), 0.1), (apart(), 0.3)] {
@@ -120,7 +120,7 @@ fn momentum_is_what_the_contacts_give() {
                 let arm = [0, 1].map(|k: usize| palm.s * away[k] - here.centre[k]);
                 let own = [0, 1].map(|k: usize| palm.force * normal[k] + palm.friction * side * away[k]);
                 moment += arm[0] * own[1] - arm[1] * own[0];
-                // the body's point at the contact, as the palm sees it
+                // the velocity of the body's point at the contact, relative to the palm
                 let rate = here.palms[0].rate + if i == 0 { 0.0 } else { palm.rate };
                 let point = [
                     here.velocity[0] - here.omega0 * arm[1] + rate * palm.s * away[1],
@@ -236,7 +236,7 @@ fn how_long_a_motion_may_go_on_does_not_change_its_beginning() {
     }
 }
 
-/// Where no modes are consistent it is said in words, at the start and on the way; and what cannot be used is refused.
+/// Where no modes are consistent there is a message, at the start and on the way; and what cannot be used is refused.
 #[test]
 fn no_modes_are_told() {
     let motion = simulate_with_friction(&apart(), 0.3, &sampled(4.0, 400)).unwrap();
@@ -254,8 +254,8 @@ fn no_modes_are_told() {
     assert!(error.to_string().contains("friction knows flat palms"), "{error}");
 }
 
-/// A motion with fifty changes of modes in twenty seconds: what was integrated beyond a change is not paid for, and where the budget is spent the motion ends with this word and not with
-/// a paradox.
+/// A motion with fifty changes of modes in twenty seconds: what was integrated beyond a change is not paid for, and where the budget is spent the motion ends
+/// for this reason and not with a paradox.
 #[test]
 fn what_a_motion_costs_is_not_taken_for_its_end() {
     let form = BodyForm::Harmonics { mean: 1.2, harmonics: vec![[0.0, 0.0], [0.1, 0.0], [0.03, -0.04]] };

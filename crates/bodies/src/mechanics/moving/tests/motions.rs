@@ -148,7 +148,7 @@ fn sines(values: &[f64]) -> (f64, Vec<Oscillation>, f64) {
     (found[0], (1..=modes).map(swing).collect(), (matrix * &found - right).amax())
 }
 
-/// Motors that exert the torques found for palms that were told how to move make them move so.
+/// Motors that exert the torques found for prescribed motions of the palms move them so.
 #[test]
 fn torques_found_are_torques_that_do_it() {
     for mut scene in [common_rate(), palms_swing()] {

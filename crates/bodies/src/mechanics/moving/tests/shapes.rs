@@ -59,7 +59,7 @@ fn a_superellipse_is_rounded_by_a_disc() {
     };
     for (exponent, less) in [(2, 0.0), (4, 0.1), (64, 0.05)] {
         let (slim, thick) = (made(exponent, less), made(exponent, less + 0.3));
-        // as far apart as the two say that they may be, and some rounding
+        // they differ by as much as the two say that they may, and some rounding
         let error = slim.quadrature_error() + thick.quadrature_error() + 1e-15;
         let length = thick.perimeter();
         close(length, slim.perimeter() + 0.3 * TAU, error * length);

@@ -4,7 +4,7 @@
 //! What is looked for has the value of a random point on slices of that point's fibre: linear equations for the coefficients of a polynomial,
 //! also of one over a product of unknowns. That a function found so has one value is counted again
 //! as for any expression. Functions generate the whole field if they have as many points in common as the outputs have: both fields have the field of all unknowns
-//! (over which those that are free are held) as an extension, of a degree that is the number of these points, and one contains the other.
+//! (over which those that are free are fixed) as an extension, of a degree that is the number of these points, and one contains the other.
 //!
 //! Reference: A. Ovchinnikov, A. Pillay, G. Pogudin and T. Scanlon, *Computing all identifiable functions of parameters for ODE models*,
 //! Systems & Control Letters 157 (2021), for the field and its generators; here they come from fibres and not from input-output equations.
@@ -14,7 +14,7 @@ mod polynomials;
 use self::polynomials::Sliced;
 use super::modular::{Echelon, Residues};
 use super::monomial::Monomial;
-use super::unseen_motions;
+use super::unobservable_directions;
 use crate::observability::fibre::{
     SlicedVariable, Slicer, Solutions, SolutionsAnswer, SolutionsOf, SolutionsQuestion, solutions,
 };
@@ -41,12 +41,12 @@ pub struct IdentifiableFunction {
 /// What was found of the field of identifiable functions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct IdentifiableFunctions {
-    /// Functions without which those that are left generate less.
+    /// Generators, each of which is needed: the others alone generate less.
     pub functions: Vec<IdentifiableFunction>,
-    /// So many further functions, independent of these, are identifiable locally.
+    /// How many further functions, independent of these, are locally identifiable.
     pub missing: usize,
-    /// How many states and constants have the same values of these functions, and how many have the same outputs, those that are not locally
-    /// determined held: where the two are equal the functions generate all.
+    /// How many states and constants have the same values of these functions, and how many have the same outputs, with those fixed that are not locally
+    /// observable: where the two are equal the functions generate all.
     pub common: Option<[usize; 2]>,
     /// Why nothing, or not all, is known.
     pub open: Option<String>,
@@ -61,9 +61,9 @@ impl IdentifiableFunctions {
 
 /// Denominators are products of so many unknowns at most.
 const HIGHEST_BELOW: usize = 2;
-/// No more functions are tried for whether they tell points apart that the others do not.
+/// No more functions are tried for whether they distinguish points that the others do not.
 const MOST_TRIED: usize = 24;
-/// A function with a longer text is none that anybody reads.
+/// Functions with a longer text are left out: nobody would read them.
 const LONGEST_TEXT: usize = 400;
 
 /// A candidate, with the functions that stand for it: cosine and sine of an angle, else one.
@@ -271,7 +271,7 @@ impl<'a> Search<'a> {
     /// What symmetries leave unchanged, where it has one value.
     fn by_symmetry(&mut self) {
         let values: Assignment = self.question.conditions.clone();
-        let Some(found) = unseen_motions(self.system, None, &values, &values) else { return };
+        let Some(found) = unobservable_directions(self.system, None, &values, &values) else { return };
         let expressions: Vec<(String, NodeId)> =
             found.functions.into_iter().map(|function| (function.text, function.value)).collect();
         let counted = self.values_of(expressions.clone());
@@ -319,7 +319,7 @@ impl<'a> Search<'a> {
         found
     }
 
-    /// Adds functions that tell points apart, and leaves out those that tell none apart; how many points the rest has in common.
+    /// Adds functions that distinguish points, and leaves out those that distinguish none; returns how many points the rest has in common.
     fn told_apart(&mut self, kept: &mut Vec<usize>, mut common: usize) -> usize {
         let others: Vec<usize> = (0..self.candidates.len()).filter(|place| !kept.contains(place)).collect();
         for place in others.into_iter().take(MOST_TRIED) {

@@ -1,4 +1,4 @@
-//! Whether gains, biases and delays that are sought can be told at all: by the rank, before anything is read.
+//! Whether estimated gains, biases and delays are identifiable at all: by the rank, before any measurement is used.
 
 use palmistry_lang::{Kind, Role, SymbolInfo, System};
 use palmistry_math::expression::{NodeId, Symbol};
@@ -7,22 +7,22 @@ use palmistry_observe::{CalibrationKind, EstimateQuestion, Signals, Sought, decl
 use palmistry_rank::observability::{Ceiling, Observability, generic_answer};
 use std::collections::HashMap;
 
-/// What is sought that no readings tell, whatever drives the inputs, where a gain or a bias is sought: by the rank of the observability
-/// codistribution at almost all states, modulo primes, with gains and biases as states at rest. A rank falls on special sets and
-/// never rises, so that what is not seen at almost all states is seen at none; what this does not name may still be unseen, and the bound
+/// The estimated unknowns that are not identifiable, whatever drives the inputs, where a gain or a bias is estimated: by the generic rank of the observability
+/// codistribution, modulo primes, with gains and biases as constant states. A rank falls on special sets and
+/// never rises, so that what is generically unobservable is so everywhere; an unknown that is not named may still be unobservable, and the Cramér-Rao bound
 /// of a window says so. Nothing is named where the rank is not known, or a column drives the model that is no input.
 ///
-/// Of a late output `h - d h'` is seen, on the set where the delay `d` is zero: there its differential is that of `h(x(t - d))`. What is not told there is not told
-/// of any delay: a direction `(xi, 1)` that no output shows at almost all states, `L_xi h = h'` of those that are late and zero of all others, commutes with the motion where
-/// the state is seen otherwise, and its flow then moves states and delays together so that nothing changes. Inputs, on which `h'` depends, are states that are read, driven by what
-/// is their rate of change: constant ones would tell no delay, and others may.
-pub(crate) fn not_told(system: &System, wanted: &EstimateQuestion, signals: &Signals) -> Vec<String> {
+/// A late output is replaced by `h - d h'` on the set where the delay `d` is zero: there its differential is that of `h(x(t - d))`. What is unobservable there is so
+/// for any delay: a generic direction `(xi, 1)` in the kernel of all outputs, `L_xi h = h'` of those that are late and zero of all others, commutes with the motion where
+/// the state is otherwise observable, and its flow then moves states and delays together so that nothing changes. Inputs, on which `h'` depends, are measured states, driven by
+/// their rate of change: constant inputs would determine no delay, and others may.
+pub(crate) fn not_identifiable(system: &System, wanted: &EstimateQuestion, signals: &Signals) -> Vec<String> {
     let names: Vec<String> = wanted.guess.iter().map(|(name, _)| name.clone()).collect();
     if !names.iter().any(|name| CalibrationKind::of(name).is_some()) {
         return Vec::new();
     }
     if !system.zero_outputs().is_empty() {
-        // what outputs tie is not driven at will: the bound of a window says what is not told
+        // signals tied by outputs are not driven at will: the Cramér-Rao bound of a window says what is not observable
         return Vec::new();
     }
     let mut system = system.clone();
@@ -109,7 +109,7 @@ fn with_calibrations(
     (!system.graph.symbols_of(nodes).iter().any(varies)).then_some(())
 }
 
-/// Puts in what is known and does not change; an angle keeps its place among the states, at any value.
+/// Puts in known constants; an angle keeps its place among the states, at any value.
 fn hold_constants(system: &mut System, names: &[String], wanted: &EstimateQuestion, signals: &Signals) {
     let mut values = HashMap::new();
     let symbols: Vec<(Symbol, SymbolInfo)> = system.symbols().map(|(s, info)| (s, info.clone())).collect();
@@ -149,14 +149,14 @@ fn hold_constants(system: &mut System, names: &[String], wanted: &EstimateQuesti
     }
 }
 
-/// Makes late outputs `h - d h'`, and of each input that is driven a state that is read. None where there is no drift to move them.
+/// Replaces late outputs by `h - d h'`, and each driven input by a measured state. None where there is no drift to move them.
 fn delayed(system: &mut System, late: &[(Symbol, Symbol)], wanted: &EstimateQuestion) -> Option<()> {
     let drift = system.drift()?;
     let is_read = |column: &Symbol| {
         system.outputs.iter().any(|(output, _)| output.as_str() == system.symbol_name(*column))
     };
     if !late.iter().all(|(column, _)| is_read(column)) {
-        // no delay is sought of what drives the model: that is said where the model is made
+        // a delay of a column that drives the model is reported where the model is made
         return None;
     }
     let mut driven: Vec<Symbol> = Vec::new();

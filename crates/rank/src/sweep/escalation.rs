@@ -1,15 +1,15 @@
-//! The rank at one state, by the cheapest rung of the ladder of numbers that suffices.
+//! The rank at one state, by the cheapest number type that suffices.
 //!
-//! | rung | numbers | what it knows |
+//! | number type | numbers | what it knows |
 //! |---|---|---|
 //! | doubles | f64 with running error bounds, elimination (streams of states) | a full rank for *certain*, or *computed* |
 //! | intervals | f64 rounded outward, elimination | a full rank for *certain* |
 //! | residues | modulo a prime of 62 bits | a lower bound for *certain* |
-//! | exact | rational numbers | the rank, and what is not seen |
+//! | exact | rational numbers | the rank, and the unobservable directions |
 //! | enclosures | enclosures of 128 bits and more | a lower bound for *certain*; the rank as *computed* |
 //!
-//! A rung that cannot tell leaves the state to the next one. A stream begins with doubles that know their errors; a single
-//! state begins with intervals. Doubles that do not are on no rung: where a row vanishes they see noise of full rank.
+//! A number type that cannot decide passes the state to the next one. A stream begins with doubles that know their errors; a single
+//! state begins with intervals. Doubles without error bounds are none of them: where a row vanishes they find noise of full rank.
 //! Where intervals fall short, a computed rank is taken from enclosures, a certified one by exact numbers.
 
 use super::certainty::Certainty;
@@ -20,7 +20,7 @@ use crate::observability::{
 use dashu::rational::RBig;
 use palmistry_math::expression::{Failure, Graph, Loaded, NodeId, Program, Symbol};
 use palmistry_math::number::{
-    Arithmetic, Enclosure, Enclosures, Floats, Interval, PrimeField, Rationals, Rung,
+    Arithmetic, Enclosure, Enclosures, Floats, Interval, NumberType, PrimeField, Rationals,
 };
 use std::borrow::Cow;
 
@@ -30,28 +30,28 @@ const PRECISE: [usize; 2] = [128, 512];
 /// What was found at one state.
 #[derive(Clone, Debug)]
 pub struct StateReport {
-    /// The rank, how it is known, and on which rung that was found.
+    /// The rank, how it is known, and on which number type that was found.
     pub rank: usize,
     /// How certain the rank is.
     pub certainty: Certainty,
     /// The numbers that decided it.
-    pub rung: Rung,
+    pub number_type: NumberType,
     /// What floating point says of the rows that remain without unit rows.
     pub spectrum: Option<Spectrum>,
-    /// Whether it is that of the quick rows.
+    /// Whether the spectrum is that of the quick rows.
     pub quick: bool,
     /// The rank that floating point suggests, unit rows included.
     pub computed: Option<usize>,
-    /// Where the rank is short: a basis of the directions that no row sees, exactly; nothing where residues decided, which
-    /// only know which unknowns take part ([`RankDecider::unseen`] has the rest).
+    /// Where the rank is short: a basis of the unobservable directions, exactly; nothing where residues decided, which only know which
+    /// unknowns take part ([`RankDecider::unobservable`] has the rest).
     pub unobservable: Vec<Vec<RBig>>,
-    /// The same basis as residues know it: of each direction the unknowns that take part.
+    /// The same basis by residues: for each direction the unknowns that take part.
     pub hidden: Vec<Vec<bool>>,
     /// Whether the rows have this rank; else derivatives of higher order raise it.
     pub is_of_rows: bool,
 }
 
-/// What deciding at one state came to.
+/// The decision at one state.
 pub enum StateDecision {
     /// It was decided.
     Report(StateReport),
@@ -107,10 +107,10 @@ pub struct DecidedRows<'r> {
     pub columns: usize,
 }
 
-/// How certain a rank has to be, and the numbers by which it may become so.
+/// How certain a rank has to be, and the residues that may prove it.
 #[derive(Clone, Copy, Debug)]
 pub struct ProofWanted {
-    /// What the rank has to be, at the least.
+    /// How certain the rank has to be, at the least.
     pub wanted: Certainty,
     /// The residues.
     pub field: PrimeField,
@@ -132,13 +132,13 @@ enum NoValues {
     Stopped(Failure),
 }
 
-/// The rank at a state by exact numbers, and a basis of the directions that no row sees.
+/// The rank at a state by exact numbers, and a basis of the unobservable directions.
 struct ExactRank {
     rank: usize,
     unobservable: Vec<Vec<RBig>>,
 }
 
-/// The rank modulo a prime, and of a basis of what no row sees the unknowns that take part.
+/// The rank modulo a prime, and of a basis of the unobservable directions the unknowns that take part.
 struct ResidueRank {
     rank: usize,
     hidden: Vec<Vec<bool>>,
@@ -150,7 +150,7 @@ pub struct RankDecider<'g> {
     defined: Defined,
     quick: Rows,
     all: Rows,
-    /// All rows without any elimination, for the directions that they do not see.
+    /// All rows without any elimination, for the unobservable directions.
     exact: Program,
     columns: usize,
     most: usize,
@@ -225,7 +225,7 @@ impl<'g> RankDecider<'g> {
             *report = StateReport {
                 rank,
                 certainty: if rank == self.most { Certainty::Certified } else { Certainty::Computed },
-                rung: Rung::Residues,
+                number_type: NumberType::Residues,
                 spectrum: None,
                 quick: false,
                 computed: None,
@@ -246,7 +246,7 @@ impl<'g> RankDecider<'g> {
         let mut report = StateReport {
             rank: full,
             certainty: Certainty::Certified,
-            rung: Rung::Intervals,
+            number_type: NumberType::Intervals,
             spectrum: None,
             quick: true,
             computed: None,
@@ -268,7 +268,7 @@ impl<'g> RankDecider<'g> {
             if let Some(found) = &mut residues
                 && found.rank == self.most
             {
-                (report.rank, report.rung) = (found.rank, Rung::Residues);
+                (report.rank, report.number_type) = (found.rank, NumberType::Residues);
                 report.hidden = std::mem::take(&mut found.hidden);
                 return StateDecision::Report(report);
             }
@@ -276,7 +276,8 @@ impl<'g> RankDecider<'g> {
         if self.wanted == Certainty::Certified {
             match self.exact(state) {
                 Ok(ExactRank { rank, unobservable }) => {
-                    (report.rank, report.unobservable, report.rung) = (rank, unobservable, Rung::Exact);
+                    (report.rank, report.unobservable, report.number_type) =
+                        (rank, unobservable, NumberType::Exact);
                     return StateDecision::Report(report);
                 }
                 Err(NoExactRank::Pole(pole)) => return StateDecision::Pole(pole),
@@ -284,18 +285,19 @@ impl<'g> RankDecider<'g> {
             }
         } else if let Some(found) = residues {
             // no more than this but for one prime in 10^15: found by arithmetic that may err, and sooner than by any other
-            (report.rank, report.certainty, report.rung) = (found.rank, Certainty::Computed, Rung::Residues);
+            (report.rank, report.certainty, report.number_type) =
+                (found.rank, Certainty::Computed, NumberType::Residues);
             report.hidden = found.hidden;
             return StateDecision::Report(report);
         }
         match self.precise(state) {
             Ok((rank, bits)) => {
                 report.rank = rank;
-                report.rung = Rung::Enclosures(bits);
+                report.number_type = NumberType::Enclosures(bits);
                 if rank < full && rank != self.most {
                     report.certainty = Certainty::Computed;
                 } else if rank < full {
-                    // no state's rank is higher: this one is known, and so is what takes part in what is not seen
+                    // no state's rank is higher: this one is known, and so are the unknowns in the unobservable directions
                     let kernel = self.enclosed_kernel(state, bits).unwrap_or_default();
                     let parts = |vector: &Vec<Enclosure>| vector.iter().map(|v| !v.contains_zero()).collect();
                     report.hidden = kernel.iter().map(parts).collect();
@@ -345,13 +347,13 @@ impl<'g> RankDecider<'g> {
         Some((rows.reduction.eliminated + certain, spectrum))
     }
 
-    /// A lower bound on the rank: the rank modulo a prime; with what takes part in the directions that are not seen modulo it.
+    /// A lower bound on the rank: the rank modulo a prime; with the unknowns that take part in the unobservable directions modulo it.
     fn residues(&self, rows: &Rows, state: &State) -> Option<ResidueRank> {
         let values = self.values(rows, state, self.field).ok()?;
         let width = rows.reduction.columns.len();
         let kernel = kernel(&self.field, rows.matrix(values), width).ok()?;
         let hidden = kernel.iter().map(|vector| {
-            // what was eliminated is seen
+            // what was eliminated is observable
             let mut parts = vec![false; self.columns];
             for (column, part) in rows.reduction.columns.iter().zip(vector) {
                 parts[*column] = *part != 0;
@@ -361,14 +363,14 @@ impl<'g> RankDecider<'g> {
         Some(ResidueRank { rank: rows.reduction.eliminated + width - kernel.len(), hidden: hidden.collect() })
     }
 
-    /// A basis of the directions that no row sees at a state, exactly; nothing where there is no exact arithmetic.
+    /// A basis of the unobservable directions at a state, exactly; nothing where there is no exact arithmetic.
     pub fn unobservable(&self, state: &State) -> Vec<Vec<RBig>> {
         self.exact(state).map(|found| found.unobservable).unwrap_or_default()
     }
 
-    /// The same to many digits, where the rank there is no less than any: a number that is enclosed together with zero is taken for
+    /// The same to many digits, where the rank there is the largest possible: a number that is enclosed together with zero is taken for
     /// zero, every other one for the simplest that is enclosed.
-    pub fn unseen_nearly(&self, state: &State) -> Vec<Vec<RBig>> {
+    pub fn nearly_unobservable(&self, state: &State) -> Vec<Vec<RBig>> {
         let value = |value: &Enclosure| match (value.low(), value.high()) {
             _ if value.contains_zero() => RBig::ZERO,
             (low, high) if low == high => low,
@@ -378,7 +380,7 @@ impl<'g> RankDecider<'g> {
         kernel.iter().map(|vector| vector.iter().map(value).collect()).collect()
     }
 
-    /// A basis of the directions that no row sees, enclosed; nothing where more than `most` says cannot be distinguished from zero.
+    /// A basis of the unobservable directions, enclosed; nothing where they are not as many as the columns less `most`.
     fn enclosed_kernel(&self, state: &State, bits: usize) -> Option<Vec<Vec<Enclosure>>> {
         let arithmetic = Enclosures::new(bits);
         let values = self.values(&self.all, state, arithmetic).ok()?;
@@ -389,7 +391,7 @@ impl<'g> RankDecider<'g> {
         }
         let zero = arithmetic.rational(&RBig::ZERO).ok()?;
         let whole = |vector: Vec<Enclosure>| {
-            // what was eliminated is seen
+            // what was eliminated is observable
             let mut parts = vec![zero.clone(); self.columns];
             for (column, part) in reduction.columns.iter().zip(vector) {
                 parts[*column] = part;

@@ -1,12 +1,12 @@
-//! What slow palms read of a body, and what follows from the readings without any shape.
+//! The measurements of slow palms, and what follows from them without any shape.
 
 use super::local::{Stencil, derivative};
 use std::ops::Range;
 
-/// Readings of both palms at sample times. SI units, angles in radians.
+/// Measurements of both palms at sample times. SI units, angles in radians.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlowMeasurements {
-    /// When; they increase.
+    /// The times, increasing.
     pub times: Vec<f64>,
     /// `phi1` and `phi2`, sample by sample: palm 1 against the X axis, palm 2 against palm 1.
     pub palms: Vec<[f64; 2]>,
@@ -65,12 +65,12 @@ impl Sampled {
         [(r1 * cosine + r2) / sine - self.s[0], self.s[1] - (r2 * cosine + r1) / sine]
     }
 
-    /// How fast the height of the centre of mass changes: the contact forces' virtual work, in parts of the weight.
+    /// The rate of the height of the centre of mass: the contact forces' virtual work relative to the weight.
     pub fn lift(&self) -> f64 {
         (self.second[0] * self.s[0] * self.w[0] - self.first[0] * self.s[1] * self.w[1]) / self.opening[0]
     }
 
-    /// Numerator and denominator of 3.37, `r_i` and the rates of the readings given.
+    /// Numerator and denominator of 3.37, `r_i` and the rates of the measurements given.
     pub fn turning(&self, radii: [f64; 2], rates: [f64; 2]) -> [f64; 2] {
         let ([s1, s2], opening_rate) = (self.s, self.w[1] - self.w[0]);
         let [sine, cosine] = self.opening;
@@ -105,7 +105,7 @@ impl SlowMeasurements {
         Sampled::of(self.palms[row], self.rates[row], self.contacts[row])
     }
 
-    /// One of the eight columns at any time, by the polynomial through the samples about it: the palms' angles, their rates, the contacts, the contacts' rates.
+    /// The eight measured quantities at any time, by the polynomial through the samples about it: the palms' angles, their rates, the contacts, the contacts' rates.
     pub(super) fn between(&self, time: f64, points: usize) -> (Sampled, [f64; 2]) {
         let stencil = Stencil::about(&self.times, time, points);
         let values = stencil.value_weights(time);
@@ -131,7 +131,7 @@ impl SlowMeasurements {
         columns[0].iter().zip(&columns[1]).map(|(a, b)| [*a, *b]).collect()
     }
 
-    /// The mean of all contacts: a length by which to measure.
+    /// The mean of all contacts: a length scale.
     pub(super) fn scale(&self) -> f64 {
         self.contacts.iter().flatten().map(|s| s.abs()).sum::<f64>() / (2 * self.rows()).max(1) as f64
     }

@@ -36,7 +36,7 @@ impl SlowTold {
             files.json(&folder.join("observe.json"), &json);
             files.announce(&folder.join("index.html"));
         }
-        // readings that no body explains are not a shape
+        // measurements that no body explains are not a shape
         let status = Status::of(self.answers.explained && self.study.iter().all(|row| row.silent == 0));
         files.print(self.form, json, || slow_text(&observed), status)
     }

@@ -1,55 +1,55 @@
-//! What arrives in a stream, and what is told of it.
+//! The pieces that arrive in a stream, and the reports on it.
 
 use crate::run::Experiment;
 use crate::scene::Method;
 use palmistry_observe::{Fault, Innovations, SampleEstimate, Tested, Update, passes_unwindowed};
 
-/// What arrives.
+/// A piece of a stream.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StreamPiece {
     /// Some bytes of comma-separated values.
     Bytes(Vec<u8>),
     /// Nothing yet.
     Nothing,
-    /// There is no more.
+    /// The end of the stream.
     End,
-    /// There is no more, because of this.
+    /// The end of the stream, for this reason.
     Broken(String),
 }
 
-/// What one observer made of a window.
+/// The answer of one observer on a window.
 #[derive(Clone, Debug)]
 pub struct StreamAnswer {
     /// The observer.
     pub method: Method,
-    /// What it believes at the last sample.
+    /// Its estimate at the last sample.
     pub end: Option<SampleEstimate>,
     /// The standard deviations of that, where a filter has them.
     pub deviations: Option<Vec<f64>>,
-    /// Its updates: one, or two where the first contradicts what was learned before.
+    /// Its updates: one, or two where the first contradicts the estimate of earlier windows.
     pub updates: Vec<Update>,
     /// Other states that fit as well.
     pub others: Vec<Update>,
-    /// What else is to be said.
+    /// Further remarks.
     pub remarks: Vec<String>,
-    /// Samples at which it could not see.
+    /// Samples at which the state was unobservable.
     pub unobserved: usize,
 }
 
 /// A window of a stream.
 #[derive(Clone, Debug)]
 pub struct WindowReport<'a> {
-    /// The scene; its readings are those of the first window.
+    /// The scene; its measurements are those of the first window.
     pub experiment: &'a Experiment,
     /// Which window it is, from 1 on.
     pub window: u64,
     /// Its samples, the one shared with the window before included.
     pub samples: usize,
-    /// How many rows had arrived.
+    /// The number of rows that had arrived.
     pub rows: usize,
-    /// What was wrong with rows since the last report.
+    /// The faults of rows since the last report.
     pub faults: Vec<Fault>,
-    /// What each observer made of it.
+    /// The answer of each observer.
     pub answers: Vec<StreamAnswer>,
 }
 
@@ -62,15 +62,15 @@ pub struct StreamEnd {
     pub rows: usize,
     /// Rows with faults.
     pub faults: usize,
-    /// Why it ended before the end, in words: an interrupt, a broken pipe, a row that is cut off.
+    /// Why it ended early, as text: an interrupt, a broken pipe, a row that is cut off.
     pub cut_off: Option<String>,
     /// A faulty row, where the scene says to stop.
     pub fault: Option<String>,
-    /// Of each observer: updates, and those that fit; whether one is contradicted.
+    /// For each observer: its updates, those that fit, and whether one is contradicted.
     pub observers: Vec<StreamTally>,
 }
 
-/// What came of an observer's updates.
+/// The tally of an observer's updates.
 #[derive(Clone, Debug)]
 pub struct StreamTally {
     /// The observer.
@@ -81,13 +81,13 @@ pub struct StreamTally {
     pub fit: usize,
     /// Those that converged and do not fit.
     pub contradicted: usize,
-    /// Those whose search did not come to an end: all of its steps were spent.
+    /// Those whose search did not converge: all of its steps were spent.
     pub spent: usize,
-    /// All of them together, and where they meet.
+    /// The tests of all of them together, and of their seams.
     pub tested: Tested,
     /// The innovations of a filter, over all windows; none of other methods.
     pub innovations: Option<Innovations>,
-    /// Samples at which it believed something, and those of them at which it could not follow its model.
+    /// Samples with an estimate, and those of them at which it could not follow its model.
     pub believed: [usize; 2],
 }
 
@@ -105,8 +105,8 @@ impl StreamTally {
 }
 
 impl StreamEnd {
-    /// Whether no update is contradicted, each search came to an end, and each method by windows has an update that fits; where there is none by windows, whether each filter passes its test. Of what was
-    /// cut off before it had any answer none is asked for.
+    /// Whether no update is contradicted, each search converged, and each method by windows has an update that fits; where there is none by windows, whether each filter passes its test. A stream that was
+    /// cut off before it had any answer needs none.
     pub fn is_sound(&self) -> bool {
         let is_whole = self.cut_off.is_none();
         let by_windows = |tally: &StreamTally| tally.method.is_by_windows();

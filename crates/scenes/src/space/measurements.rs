@@ -1,4 +1,4 @@
-//! What three palms tell, as sensors and motors tell it: angles of the palms, places of the contacts, torques.
+//! The measurements of three palms, with the errors of their sensors: angles of the palms, places of the contacts, torques.
 
 use crate::simulation::normal;
 use crate::solid::{PalmMeasurement, PalmSurface, SolidMeasurements};
@@ -7,12 +7,12 @@ use palmistry_bodies::mechanics::spatial::{SpatialMoment, SpatialPalm};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// How well sensors read: standard deviations and a step.
+/// The errors of sensors: standard deviations and a rounding step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpaceSensor {
     /// Of a coordinate of a contact, in m.
     pub noise: f64,
-    /// The step to which these are rounded, in m; zero where they are not.
+    /// The step to which contacts are rounded, in m; zero where they are not.
     pub resolution: f64,
     /// Of a torque, in N m.
     pub torque_noise: f64,
@@ -31,16 +31,16 @@ pub struct PalmAtSample {
     pub torque: f64,
 }
 
-/// All of it, sample by sample.
+/// The measurements, sample by sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SpaceMeasurements {
-    /// They increase.
+    /// The times, increasing.
     pub times: Vec<f64>,
     pub palms: Vec<[PalmAtSample; 3]>,
 }
 
 impl SpaceMeasurements {
-    /// What is read of a motion: contacts and torques with normal errors, contacts rounded; the palms' motion as it is.
+    /// The measurements of a motion: contacts and torques with normal errors, contacts rounded; the palms' motion without error.
     pub fn of(moments: &[SpatialMoment], sensor: &SpaceSensor, seed: u64) -> SpaceMeasurements {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let rounded = |place: f64| match sensor.resolution {
@@ -64,7 +64,7 @@ impl SpaceMeasurements {
         }
     }
 
-    /// The same with where the palms hang and how they are inert, for the estimator.
+    /// The same with the places and inertias of the palms, for the estimator.
     pub fn solid(
         &self,
         palms: &[SpatialPalm; 3],
@@ -94,7 +94,7 @@ impl SpaceMeasurements {
     }
 }
 
-/// How the estimator has a palm's surface.
+/// A palm's surface in the estimator's form.
 pub(super) fn surface(palm: &SpatialPalm) -> PalmSurface {
     PalmSurface { curvature: palm.curvature, touch: palm.touch }
 }

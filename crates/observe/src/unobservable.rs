@@ -1,7 +1,7 @@
-//! Windows that do not tell the state grow: what they read is not thrown away, but read again together with what comes next.
+//! Windows that do not determine the state grow: their measurements are used again together with those that come next.
 //!
-//! A window in which something that is sought is not seen holds or integrates, as it is told to. The next one is tried together with it, from what was known
-//! before both; where that explains the readings it is the answer, and else the window stands alone. So it goes on up to [`MOST`] windows, after which the
+//! A window in which an estimated state is unobservable holds or integrates, as the settings say. The next one is tried together with it, from what was known
+//! before both; where that explains the measurements it is the answer, and else the window stands alone. So it goes on up to [`MOST`] windows, after which the
 //! first ones are let go, so that no stream keeps more than that.
 
 use super::inheritance::Anew;
@@ -16,12 +16,12 @@ use std::sync::Arc;
 pub const MOST: usize = 8;
 
 impl MovingWindow {
-    /// Whether a window that is blind is read again with the next: not where each stands alone, is whole, or has a weight for each pair of its readings.
+    /// Whether an uninformative window is taken again with the next: not where each stands alone, is whole, or has a weight for each pair of its measurements.
     pub(super) fn may_grow(&self, task: &Task<'_>, clamped: &[usize]) -> bool {
         task.inherit && !task.whole && clamped.is_empty() && !weights::are_needed(task)
     }
 
-    /// The update of a window together with those before that told too little, where that is borne out, and what was known before them.
+    /// The update of a window together with the uninformative ones before it, where the measurements bear it out, and what was known before them.
     pub(super) fn grown_by_unseen<'u>(
         &self,
         task: &Task<'_>,
@@ -34,7 +34,7 @@ impl MovingWindow {
         let unobserved = unobserved?;
         let all = rows.start - unobserved.rows..rows.end;
         let before = Learned { is_asked: learned.is_asked, ..unobserved.before.clone() };
-        // what does not come of it is not told: the window then stands alone
+        // remarks of a failed attempt are dropped: the window then stands alone
         let mut told = Track::default();
         let (update, others) = self.next_update(task, &all, &[], &before, anew, &mut told);
         if !update.is_borne_out() {
@@ -50,7 +50,7 @@ impl MovingWindow {
         Some((unobserved, update, others))
     }
 
-    /// What the next window takes as well, after one that is blind.
+    /// What the next window takes as well, after one that is uninformative.
     pub(super) fn unseen_after(
         &self,
         rows: &Range<usize>,
