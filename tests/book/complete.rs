@@ -227,7 +227,7 @@ fn files_of_the_program_are_where_the_book_says() {
 }
 
 /// The lines of a file before its tests, or of all files of a folder that are no tests.
-fn lines_without_tests(path: &std::path::Path) -> usize {
+pub fn lines_without_tests(path: &std::path::Path) -> usize {
     if path.is_dir() {
         let entries = std::fs::read_dir(path).expect("a folder").map(|entry| entry.expect("an entry").path());
         let is_source = |inner: &std::path::PathBuf| {

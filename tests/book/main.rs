@@ -17,8 +17,10 @@ mod blocks;
 mod complete;
 mod gallery;
 mod likeness;
+mod numbers;
 mod pages;
 mod pictures;
+mod values;
 
 use pages::{go_through, pages};
 

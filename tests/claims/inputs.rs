@@ -237,10 +237,15 @@ fn dimensions_go_along() {
 /// Words that begin these entries are names elsewhere.
 #[test]
 fn the_new_words_are_names_too() {
-    let text = "system \"s\" state known, unknown, initial, experiments param t = 2 drift f known' = unknown unknown' = initial \
-                initial' = experiments + t experiments' = 0 output known sample known in [0, 1] unknown in [0, 1] initial in [0, 1] \
-                experiments in [0, 1] claim 1: rank = 4";
+    let text = "system \"s\" state initial, experiments param t = 2 drift f initial' = experiments + t experiments' = 0 output initial \
+                sample initial in [0, 1] experiments in [0, 1] claim 1: rank = 2";
     assert!(prove(&system(text)).iter().all(|outcome| outcome.ok));
+    // with a comma before it, `unknown` would be a third constant, and a and b known
+    for word in ["unknown", "known", "everywhere", "except"] {
+        let text = format!("system \"s\" state x param a, b, {word} drift f x' = -a*b*x output x");
+        let error = System::parse("test.proof", &text, Path::new("")).expect_err(&text);
+        assert!(error.message.contains("a word of the language"), "{error}");
+    }
 }
 
 /// Where it stands, and what is said.

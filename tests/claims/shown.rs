@@ -23,7 +23,7 @@ fn proved_and_shown(model: &str, claims: &[String]) -> Vec<(bool, bool)> {
     };
     let records: Vec<_> = claims.iter().enumerate().map(record).collect();
     let file =
-        json!({"schema": "palmistry-verdicts", "version": 3, "tool": "", "seed": 1, "verdicts": records});
+        json!({"schema": "palmistry-verdicts", "version": 4, "tool": "", "seed": 1, "verdicts": records});
     let file = VerdictFile::read(&file.to_string()).expect("a verdict file");
     let (sources, effort, never) = (ProofSources::given([read()]), Effort::default(), false.into());
     let with = Checking { sources: &sources, seed: 1, effort: &effort, interrupt: &never };

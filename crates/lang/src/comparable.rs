@@ -140,7 +140,8 @@ impl System {
         };
         for function in functions {
             let symbols = self.graph.symbols_of([*function]);
-            if symbols.iter().any(|symbol| self.states.contains(symbol)) {
+            let has_no_value = symbols.is_empty() && self.graph.constant_value(*function).is_none();
+            if has_no_value || symbols.iter().any(|symbol| self.states.contains(symbol)) {
                 continue;
             }
             let span = &statement.equation.span;
