@@ -16,6 +16,7 @@ use super::source_text::refuse_reordering;
 use super::syntax::{Item, OutputSyntax};
 use super::unknowns::UnknownKind;
 use super::written::{Written, in_one_line};
+use palmistry_math::expression::parse::UNDECLARABLE;
 use palmistry_math::expression::syntax::{Expr, ExprKind, Name, Span};
 use palmistry_math::expression::{Graph, Guard, NodeId, Symbol};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -307,7 +308,7 @@ impl System {
         let taken = declared.is_some_and(|info| info.kind != Kind::Imported)
             || self.definitions.contains_key(&name.text)
             || ["pi", "rank", "others"].contains(&name.text.as_str());
-        if ["known", "unknown", "everywhere", "except", "infinity"].contains(&name.text.as_str()) {
+        if UNDECLARABLE.contains(&name.text.as_str()) {
             let message = format!("'{}' is a word of the language", name.text);
             let problem = Problem::new(Code::Name, &name.span, message, "choose another name");
             return Err(match name.text.as_str() {

@@ -13,6 +13,8 @@ pub const VIEWS: &[&str] = &views::WORDS;
 
 /// Words that are never names, most of [`ENTRIES`] among them.
 pub const RESERVED: &[&str] = &parse::RESERVED;
+/// Special words that cannot be declared as names.
+pub const UNDECLARABLE: &[&str] = &parse::UNDECLARABLE;
 
 /// Words with a meaning at some places, and names elsewhere.
 pub const SPECIAL: &[&str] = &parse::SPECIAL;

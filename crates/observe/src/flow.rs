@@ -342,12 +342,12 @@ impl System<f64, DVector<f64>> for Equations<'_> {
 }
 
 /// Why an integration stops at a pole.
-const TOO_SHORT: &str = "no step is small enough, as near a pole or a jump";
+const TOO_SHORT: &str = "no step is small enough, as near a singularity or a jump";
 
 /// Why an integration stops that is too long.
 fn spent() -> String {
     format!(
-        "the equations were evaluated {MOST_EVALUATIONS} times since the sample before, and no more is done: the next sample is too far away, or a pole is near"
+        "the equations were evaluated {MOST_EVALUATIONS} times since the sample before, and no more is done: the next sample is too far away, or a singularity is near"
     )
 }
 

@@ -68,7 +68,9 @@ pub enum Objection {
 impl fmt::Display for Objection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Objection::Pole(PoleMet { divisor, time }) => write!(f, "a pole, {divisor} = 0 at {time:.4} s"),
+            Objection::Pole(PoleMet { divisor, time }) => {
+                write!(f, "a singularity, {divisor} = 0 at {time:.4} s")
+            }
             Objection::Short { rank, of, at, order } => {
                 write!(f, "rank {rank} of {of} at {at:.4} s, from the outputs")?;
                 if *order > 0 {

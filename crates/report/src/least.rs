@@ -186,7 +186,8 @@ fn rank_lines(plan: &ScenePlan, out: &mut String) {
     let along = &plan.along;
     let from = if plan.along_truth { "true values" } else { "first guess" };
     if along.decided == 0 {
-        let why = along.lost.as_deref().unwrap_or("its equations have a pole at every sample that was asked");
+        let why =
+            along.lost.as_deref().unwrap_or("its equations are singular at every sample that was asked");
         prose(&format!("the rank along the motion from the {from} is not known: {why}"), out);
         return;
     }
@@ -208,7 +209,10 @@ fn rank_lines(plan: &ScenePlan, out: &mut String) {
     }
     prose(&text, out);
     if let Some(pole) = &along.pole {
-        prose(&format!("the motion meets a pole at {:.3} s: {} is zero there", pole.time, pole.divisor), out);
+        prose(
+            &format!("the motion meets a singularity at {:.3} s, where {} is zero", pole.time, pole.divisor),
+            out,
+        );
     }
     if let Some(lost) = &along.lost {
         prose(&format!("the motion could not be followed to the end: {lost}"), out);

@@ -91,7 +91,7 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
     let shade = |step: usize| shade(SHADES - 1 - step);
     let mut by_colour: Vec<(RGBColor, String)> =
         (0..SHADES).map(|step| (shade(step), values(step))).collect();
-    by_colour.push((POLE, "a pole".to_owned()));
+    by_colour.push((POLE, "a singularity".to_owned()));
     by_colour.push((INFINITE, INFINITE_TEXT.to_owned()));
     let beside: Vec<(RGBColor, &str)> =
         [(INFINITE, "infinite", infinite > 0), (POLE, "pole", map.deviations.contains(&None))]
@@ -294,7 +294,7 @@ const MOST_NAMED: usize = 3;
 /// values, those that have no stripe too.
 fn columns(slope: &Slope, place: impl Fn(f64) -> i32, [top, bottom]: [i32; 2]) -> Vec<Hover> {
     let said = |values: &Option<Vec<f64>>| match values {
-        None => "a pole".to_owned(),
+        None => "a singularity".to_owned(),
         Some(values) => {
             let number =
                 |value: &f64| if value.is_finite() { format!("{value:.1e}") } else { "infinite".to_owned() };
@@ -495,7 +495,7 @@ mod tests {
         cell("1.0e0 to", 0);
         cell("above", 1);
         cell(INFINITE_TEXT, 2);
-        cell("a pole", 3);
+        cell("a singularity", 3);
         for word in [">well<", ">poorly<", ">infinite<", ">pole<"] {
             assert!(found.contains(word), "{word}: {found}");
         }

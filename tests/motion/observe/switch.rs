@@ -93,7 +93,7 @@ fn the_program_says_who_answered_and_why() {
     let output = palmistry(&["observe", file.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(0));
     let told = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(told.contains("quotient: not asked: a pole, c = 0 at 2.5300 s"), "{told}");
+    assert!(told.contains("quotient: not asked: a singularity, c = 0 at 2.5300 s"), "{told}");
     assert!(told.contains("place: answers: rank 2 of 2 at 21 samples, certified"), "{told}");
     let found = json(&palmistry(&["observe", file.to_str().unwrap(), "--json"]));
     let asked = &found["windows"][2]["modes"];

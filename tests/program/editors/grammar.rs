@@ -4,7 +4,9 @@ use super::shipped;
 use super::textmate::Grammar;
 use crate::common::{folder, palmistry, write};
 use palmistry::System;
-use palmistry::system::vocabulary::{CONSTANTS, ENTRIES, RESERVED, SPECIAL, VIEWS, dimensions, functions};
+use palmistry::system::vocabulary::{
+    CONSTANTS, ENTRIES, RESERVED, SPECIAL, UNDECLARABLE, VIEWS, dimensions, functions,
+};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -86,7 +88,7 @@ fn words_that_may_be_names_are_told_by_what_follows() {
     assert_eq!(met, SPECIAL.iter().copied().collect(), "each of them");
 
     // and the same words as names
-    let names: Vec<&str> = SPECIAL.iter().copied().filter(|word| *word != "others").collect();
+    let names: Vec<&str> = SPECIAL.iter().copied().filter(|word| !UNDECLARABLE.contains(word)).collect();
     let sum = names.join(" + ");
     let text =
         format!("system \"names\"\nstate {}\nlet total = {sum}\nlet o = total*order/to\n", names.join(", "));

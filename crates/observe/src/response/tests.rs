@@ -68,7 +68,7 @@ fn a_sample_that_is_too_far_away_is_no_pole() {
     let question = ResponseQuestion { start: map(&[("x", 0.5), ("v", 0.1)]), ..ResponseQuestion::default() };
     let lost = response(&oscillator, &question, &[0.0, 3.15e7]).unwrap_err().to_string();
     assert!(lost.contains("the equations were evaluated 3000 times"), "{lost}");
-    assert!(lost.contains("the next sample is too far away, or a pole is near"), "{lost}");
+    assert!(lost.contains("the next sample is too far away, or a singularity is near"), "{lost}");
     // steps between two samples are counted, and not those of the whole motion
     let times: Vec<f64> = (0..400).map(f64::from).collect();
     assert!(response(&oscillator, &question, &times).unwrap().ended.is_none());

@@ -162,7 +162,7 @@ fn weights_are_linear_in_the_samples() {
             assert!(weights.fit(&weighted, &slopes, 1e-9, 2 * count - 5, (Loss::Squares, 1e-3)).fits);
             begin.elapsed().as_secs_f64()
         };
-        (0..3).map(|_| once()).fold(f64::INFINITY, f64::min)
+        (0..8).map(|_| once()).fold(f64::INFINITY, f64::min)
     };
     let (few, many) = (seconds(250), seconds(1000));
     assert!(many < 10.0 * few, "{few} s and {many} s");

@@ -188,7 +188,9 @@ pub(crate) fn decide_nearness(
                 ));
             }
             Err(error) if bits >= 1 << 14 => return Verdict::undecided(error.to_string()),
-            Err(ValueError::Pole(divisor)) => return Verdict::undecided(format!("a pole: {divisor} = 0")),
+            Err(ValueError::Pole(divisor)) => {
+                return Verdict::undecided(format!("undefined: a division by {divisor} = 0"));
+            }
             Err(_) => {
                 bits *= 4;
                 continue;

@@ -151,7 +151,7 @@ pub(super) fn decide(
         }
         GenericRank::Pole(divisor) => {
             let text = system.graph.text(divisor);
-            Verdict::undecided(format!("every state there is a pole: {text} = 0 is divided by"))
+            Verdict::undecided(format!("undefined at every state there: a division by {text} = 0"))
         }
         GenericRank::Functions => by_bounds(system, rows, limits, claimed, rng),
         GenericRank::Unknown(why) => Verdict::undecided(why),

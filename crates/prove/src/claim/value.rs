@@ -39,7 +39,7 @@ pub enum ValueError {
     Pole(String),
     /// A divisor could not be distinguished from zero.
     #[error(
-        "{divisor} cannot be distinguished from zero with {bits} bits: the point is a pole, or very near to one"
+        "{divisor} cannot be distinguished from zero with {bits} bits: the point is singular, or very near to that"
     )]
     NearPole { divisor: String, bits: usize },
     /// The value could not be distinguished from zero, nor be proved to be zero.

@@ -17,7 +17,7 @@ pub enum CodistributionError {
     #[error("{0}")]
     NoMotion(String),
     /// Every state is a pole: a divisor is zero at all of them.
-    #[error("every state there is a pole: {divisor} = 0 is divided by")]
+    #[error("undefined at every state there: a division by {divisor} = 0")]
     Pole {
         /// As the file writes it.
         divisor: String,

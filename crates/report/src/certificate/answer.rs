@@ -145,7 +145,7 @@ pub fn region_text(answer: &RegionAnswer) -> String {
     }
     let _ = writeln!(
         out,
-        "  a minor is proved to vanish somewhere in boxes of {:.2e} of it; {:.2e} is undecided, or a pole runs through it",
+        "  a minor is proved to vanish somewhere in boxes of {:.2e} of it; {:.2e} is undecided, or has a singularity in it",
         answer.minor_vanishes, answer.rest
     );
     let names = |matter: bool| -> Vec<&str> {
@@ -175,7 +175,7 @@ pub fn region_text(answer: &RegionAnswer) -> String {
             part.open_boxes
         );
         for vanishing in &part.vanishing {
-            let what = if vanishing.minor.is_some() { "a minor vanishes" } else { "a pole lies" };
+            let what = if vanishing.minor.is_some() { "a minor vanishes" } else { "a singularity lies" };
             let _ = writeln!(
                 out,
                 "  {what} in {} boxes of {:.2e}: {} = 0",

@@ -61,7 +61,7 @@ fn meaning(standing: BoxStanding) -> &'static str {
     match standing {
         BoxStanding::Proved => "full rank is proved",
         BoxStanding::MinorVanishes => "a minor vanishes somewhere in here",
-        BoxStanding::Pole => "a pole runs through",
+        BoxStanding::Pole => "a singularity in it",
         BoxStanding::Undecided => "not decided",
     }
 }

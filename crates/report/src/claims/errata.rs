@@ -15,9 +15,8 @@ pub fn errata_markdown<'o>(paper: &Paper, outcomes: impl IntoIterator<Item = &'o
     let outcomes: Vec<&Outcome> = outcomes.into_iter().collect();
     let mut out = format!(
         "# Errata to {}\n\n\
-         Written by `palmistry verify`; every statement below is checked each time it runs. A form of the text that is \
-         called wrong is refuted by a state in exact numbers at which its two sides differ, wherever it can be stated; the \
-         right form is proved.\n\n",
+         Written by `palmistry verify`; every statement below is checked each time it runs. Each printed form is refuted \
+         at a state in exact numbers, at which its two sides differ, wherever it can be stated; the corrected form is proved.\n\n",
         reference(paper),
     );
     words_markdown(&paper.numbering, &outcomes, &mut out);

@@ -80,7 +80,7 @@ pub(super) fn faults(numbering: &Numbering, claims: &[Placed<'_>], anchors: &Anc
         @if Flaw::ALL.into_iter().any(|fault| !of_kind(fault).is_empty()) {
             section #errata {
                 h2 { "What does not hold as it stands" }
-                p { "A form of the text that is called wrong is refuted by a state that a pocket calculator can check; the right form is proved." }
+                p { "Each printed form below is refuted at a state that a pocket calculator can check, wherever it can be stated; the corrected form is proved." }
                 @for fault in Flaw::ALL {
                     @let found = of_kind(fault);
                     @if !found.is_empty() {
@@ -95,7 +95,7 @@ pub(super) fn faults(numbering: &Numbering, claims: &[Placed<'_>], anchors: &Anc
                         }
                     }
                 }
-                details { summary { "the rule by which damage is given to somebody" } p { (RULE_OF_DAMAGE.replace('*', "")) } }
+                details { summary { "how it is decided whether the author, the print or the scan is at fault" } p { (RULE_OF_DAMAGE.replace('*', "")) } }
             }
         }
     }

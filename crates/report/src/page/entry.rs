@@ -144,7 +144,7 @@ pub(super) fn name(engine: usize) -> String {
 fn certainty(log2_error: f64) -> Markup {
     html! {
         @if log2_error == f64::NEG_INFINITY { "; certain" }
-        @else { "; but for " (raised(&error_bound(log2_error))) }
+        @else { "; error probability below " (raised(&error_bound(log2_error))) }
     }
 }
 

@@ -66,7 +66,7 @@ fn certified(regions: &[(&System, &RegionAnswer)]) -> Markup {
                     }
                     figcaption {
                         "How much of the box is still open, box by box; and the boxes over two coordinates: pale where full rank is "
-                        "proved, red where a minor vanishes, black where a pole runs through, grey where nothing is decided; hundreds of boxes in cells, pale where nothing else reaches in."
+                        "proved, red where a minor vanishes, black where a singularity lies in it, grey where nothing is decided; hundreds of boxes in cells, pale where nothing else reaches in."
                     }
                 }
             }

@@ -298,7 +298,7 @@ fn file_text(file: &FileFindings, out: &mut String) {
         }
         for rank in &file.ranks {
             let (full, own) = match rank.answer() {
-                _ if rank.is_pole() => ("a pole".to_owned(), "-".to_owned()),
+                _ if rank.is_pole() => ("a singularity".to_owned(), "-".to_owned()),
                 Ok(answer) => (ranks_in_words(answer, false), ranks_in_words(answer, true)),
                 Err(why) => (format!("not decided: {why}"), String::new()),
             };

@@ -101,10 +101,9 @@ fn maps(map: &MapFound, units: Units<'_>) -> Markup {
             }
             figcaption {
                 b { (map.view.title) ". " }
-                "How well " (map.view.of.as_deref().unwrap_or("the worst state")) " is observable by these rows: its standard "
-                "deviation over its prior one, where each row is measured up to its own range (computed, not certified). Light is "
+                "The standard deviation of " (map.view.of.as_deref().unwrap_or("the worst state")) " over its prior one, where each row is measured up to its own range (computed, not certified). Light is "
                 "small, which is well; dark is large; green is infinite, which is unobservable or not distinguishable from it; white "
-                "is a pole. "
+                "is a singularity. "
                 @if map.view.of.is_none() { (worst_of(map)) }
                 @if let Some(caption) = &map.view.caption { (caption) }
             }

@@ -13,7 +13,8 @@ pub use tokens::Expected;
 use tokens::{DEEPEST, closing, number};
 #[doc(hidden)]
 pub use tokens::{
-    Depth, RESERVED, Read, SPECIAL, Text, blank, ends_a_line, keyword, name, sign, stop, within, word,
+    Depth, RESERVED, Read, SPECIAL, Text, UNDECLARABLE, blank, ends_a_line, keyword, name, sign, stop,
+    within, word,
 };
 use winnow::combinator::{alt, cut_err, not, opt, preceded, separated};
 use winnow::error::ErrMode;

@@ -175,6 +175,9 @@ pub const SPECIAL: [&str; 31] = [
     "experiments",
 ];
 
+/// Those of them that are no names where one is declared: a comma too many would make a constant of them.
+pub const UNDECLARABLE: [&str; 6] = ["known", "unknown", "everywhere", "except", "infinity", "others"];
+
 /// Greek letters with their names, which a name may be written with: `\u{3c6}1` is `phi1`. Variants of a letter are the letter.
 const GREEK: [(&str, &str); 24] = [
     ("\u{3b1}\u{391}", "alpha"),
