@@ -1,4 +1,4 @@
-//! `palmistry rank`: is the state seen in the outputs?
+//! `palmistry rank`: is the state observable from the outputs?
 
 use super::arguments::Wanted;
 use super::interrupt::{INTERRUPTED, begin_to_tell, nothing_found, watched};
@@ -23,7 +23,7 @@ use palmistry::sweep::{
 };
 use palmistry::system::Code;
 use palmistry::{RankQuestion, System};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -46,6 +46,7 @@ use std::sync::{Arc, Mutex, PoisonError};
   palmistry rank mysystem.proof --where 'sin(phi1) = 0'    on the set of a condition
   palmistry rank mysystem.proof --where-it-drops           the exact set, with a proof that it drops nowhere else
   palmistry rank mysystem.proof --global                   how many values of each unknown give the same outputs
+  palmistry rank mysystem.proof --global --at omega0=0     and the rank where omega0 is zero
   palmistry rank mysystem.proof --functions                generators of all functions of the unknowns that have one value
   palmistry rank mysystem.proof --digits 40                the worst state's singular values, all digits certain
   palmistry rank mysystem.proof --accessible               what the inputs can move, by brackets
@@ -103,22 +104,22 @@ pub(crate) struct Rank {
     /// Write a page with these sets and their proof (index.html), and drops.json, into this folder.
     #[arg(long, value_name = "DIR", requires = "where_it_drops")]
     out: Option<PathBuf>,
-    /// Instead of sampled states: how many values of each unknown give the same outputs, one (it is globally identifiable or
-    /// observable), finitely many over the complex numbers, or infinitely many. For rational systems, generically, by
-    /// Groebner bases at
-    /// random points modulo random primes; each number says whether it is proved or computed.
-    #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "accessible", "where_it_drops", "reparametrise", "shard", "merge", "missing"])]
+    /// How many values of each unknown give the same outputs: one (it is globally identifiable or observable), finitely many over the
+    /// complex numbers, or infinitely many. For rational systems, generically, by Groebner bases at random points modulo random primes;
+    /// each number says whether it is proved or computed. States are sampled only where another option asks for it; conditions
+    /// ('--at', '--where') concern those states, and not these numbers.
+    #[arg(long, conflicts_with_all = ["shard", "missing"])]
     global: bool,
     /// As '--global', and then generators of all identifiable functions: rational functions of the unknowns that have one value for given
     /// outputs, such as k1 + k2 and k1*k2 where k1 and k2 can be exchanged, and of which every other one is a rational function.
-    #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "accessible", "where_it_drops", "reparametrise", "shard", "merge", "missing"])]
+    #[arg(long, conflicts_with_all = ["shard", "missing"])]
     functions: bool,
     /// With '--global' and '--functions': how much work may be done, in products of residues; what takes more is undecided.
     #[arg(long, default_value_t = SOLUTIONS_WORK, value_name = "N", requires = "counted")]
     work: u64,
     /// Write a row for each sampled state to a file, CSV or Parquet by its extension: index, rank, certified, smallest singular value,
     /// condition. With '--shard' those of its states.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["accessible", "where_it_drops", "global", "functions", "merge", "missing"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["accessible", "where_it_drops", "merge", "missing"])]
     table: Option<PathBuf>,
     /// Add the coordinates of each state to that table, angles in radians.
     #[arg(long, requires = "table")]
@@ -145,6 +146,44 @@ enum SoFar {
     Values(Box<GlobalAnswer>),
     Drops(Box<DropAnswer>),
     Accessible(Box<AccessibilityAnswer>),
+    /// A whole answer, and of the numbers of solutions what is known.
+    WithValues(Box<Printed>, Option<Box<GlobalAnswer>>),
+}
+
+/// An answer as it is printed.
+#[derive(Clone)]
+struct Printed {
+    object: Value,
+    text: String,
+}
+
+impl Printed {
+    /// With the numbers of solutions, which stand first in a text.
+    fn with(mut self, values: &GlobalAnswer) -> Printed {
+        self.object["global"] = global_json(values);
+        Printed { text: format!("{}\n\n{}", global_text(values), self.text), ..self }
+    }
+}
+
+/// An answer, the files that were written with it, and what the run has come to.
+struct Answered {
+    files: Files,
+    printed: Printed,
+    status: Status,
+}
+
+impl Answered {
+    fn print(self, form: Form) -> miette::Result<Status> {
+        let Printed { object, text } = self.printed;
+        self.files.print(form, object, || text, self.status)
+    }
+}
+
+/// What a question has come to.
+enum Step {
+    Answered(Answered),
+    /// It is printed, and nothing is to be added.
+    Told(Status),
 }
 
 impl SoFar {
@@ -168,6 +207,14 @@ impl SoFar {
             SoFar::Accessible(answer) => {
                 files.print(form, accessibility_json(answer), || accessibility_text(answer), Status::CutOff)
             }
+            SoFar::WithValues(printed, values) => {
+                let printed = Printed::clone(printed);
+                let printed = match values {
+                    Some(values) => printed.with(values),
+                    None => printed,
+                };
+                Answered { files, printed, status: Status::CutOff }.print(form)
+            }
         }
     }
 }
@@ -185,9 +232,6 @@ impl Rank {
 
     fn work(self, known: &dyn Fn(SoFar)) -> miette::Result<Status> {
         let mut system = System::read(&self.file)?;
-        if self.where_it_drops {
-            return self.tell_where(&mut system, known);
-        }
         // what is known is also told where the work is cut off
         let last = RefCell::new(SoFar::Nothing);
         let known = &|so_far: SoFar| {
@@ -212,9 +256,52 @@ impl Rank {
     }
 
     fn looked_at(&self, system: &mut System, known: &dyn Fn(SoFar)) -> Result<Status, Ended> {
-        if self.global || self.functions {
-            return self.tell_values(system, known);
+        let form = Form::of(self.json);
+        let is_counted = self.global || self.functions;
+        if is_counted && !self.asks_for_ranks() {
+            let answer = self.values(system, &|answer| known(SoFar::Values(Box::new(answer))))?;
+            begin_to_tell();
+            let printed = Printed { object: global_json(&answer), text: global_text(&answer) };
+            return Ok(Answered { files: Files::default(), printed, status: status_of(&answer) }.print(form)?);
         }
+        let first = if self.where_it_drops {
+            Step::Answered(self.singular_set(system, known)?)
+        } else {
+            self.ranks(system, known)?
+        };
+        let mut answered = match first {
+            Step::Told(status) => return Ok(status),
+            Step::Answered(answered) => answered,
+        };
+        if is_counted {
+            let printed = Box::new(answered.printed.clone());
+            known(SoFar::WithValues(printed.clone(), None));
+            let mut anew = System::read(&self.file).map_err(Report::from)?;
+            let tell = |answer| known(SoFar::WithValues(printed.clone(), Some(Box::new(answer))));
+            let values = self.values(&mut anew, &tell)?;
+            if answered.status == Status::AsExpected {
+                answered.status = status_of(&values);
+            }
+            answered.printed = answered.printed.with(&values);
+        }
+        begin_to_tell();
+        Ok(answered.print(form)?)
+    }
+
+    /// Whether something else is asked for beside numbers of solutions.
+    fn asks_for_ranks(&self) -> bool {
+        let files = [&self.verdicts, &self.reparametrise, &self.table, &self.shards.merge];
+        self.where_it_drops
+            || self.accessible
+            || self.samples.is_some()
+            || self.order.is_some()
+            || self.digits.is_some()
+            || !(self.at.is_empty() && self.conditions.is_empty())
+            || files.into_iter().any(Option::is_some)
+    }
+
+    /// The rank at sampled states, or the dual question.
+    fn ranks(&self, system: &mut System, known: &dyn Fn(SoFar)) -> Result<Step, Ended> {
         let fixed: BTreeMap<_, _> =
             system.given_values(&self.at).map_err(Report::from)?.into_iter().collect();
         let samples = self.samples.unwrap_or(RankQuestion::default().samples);
@@ -232,7 +319,7 @@ impl Rank {
             progress: &|done| bar.set_position(done),
         };
         if self.accessible {
-            return accessible(system, question, &bar, known, self.json);
+            return Ok(Step::Answered(accessible(system, question, &bar, known)?));
         }
         let nothing_asked = self.samples.is_none() && self.order.is_none() && self.verdicts.is_none();
         let asked = RankPreparation::fingerprint(system, question, nothing_asked);
@@ -245,7 +332,7 @@ impl Rank {
         let form = Form::of(self.json);
         if let Some(missing) = &self.shards.missing {
             begin_to_tell();
-            return Ok(parts.tell_missing(missing, form)?);
+            return Ok(Step::Told(parts.tell_missing(missing, form)?));
         }
         let prepare = |system: &mut System| {
             let (file, mut branches) = (system.name.clone(), Vec::new());
@@ -265,7 +352,7 @@ impl Rank {
                 bar.finish_and_clear();
                 Ok(part.text())
             });
-            return Ok(done?);
+            return Ok(Step::Told(done?));
         }
         let (mut files, prepared) = (Files::default(), prepare(system)?);
         let parts = match &self.shards.merge {
@@ -281,7 +368,6 @@ impl Rank {
         if self.no_times {
             answer.forget_times();
         }
-        begin_to_tell();
         if let Some(path) = &self.verdicts {
             let records = rank_records(system, &answer, &self.conditions);
             let text = records.map_err(|why| why.to_string()).and_then(|records| {
@@ -298,13 +384,13 @@ impl Rank {
         if let Some(Ok(found)) = &written {
             object["reparametrised"] = json!({ "claims": found.claims, "proved": found.proved });
         }
-        let text = || match &written {
+        let text = match &written {
             Some(Ok(found)) => format!("{}\n{}", rank_text(&answer, self.details), found.in_words()),
             _ => rank_text(&answer, self.details),
         };
         let status =
             if answer.interrupted() || answer.cut_off() { Status::CutOff } else { Status::AsExpected };
-        Ok(files.print(form, object, text, status)?)
+        Ok(Step::Answered(Answered { files, printed: Printed { object, text }, status }))
     }
 
     /// Looks at some states, and writes the table of them where one is wanted.
@@ -350,23 +436,16 @@ impl Rank {
     }
 
     /// How many values of each unknown give the same outputs.
-    fn tell_values(&self, system: &mut System, known: &dyn Fn(SoFar)) -> Result<Status, Ended> {
-        let mut tell = |answer| known(SoFar::Values(Box::new(answer)));
+    fn values(&self, system: &mut System, tell: &dyn Fn(GlobalAnswer)) -> Result<GlobalAnswer, Ended> {
         let wanted = if self.functions { SolutionsWanted::Functions } else { SolutionsWanted::Values };
-        let answer = answer_solutions_telling(system, wanted, self.work, &INTERRUPTED, &mut tell)?;
-        begin_to_tell();
-        let status =
-            if answer.is_final() && !answer.interrupted { Status::AsExpected } else { Status::CutOff };
-        let files = Files::default();
-        Ok(files.print(Form::of(self.json), global_json(&answer), || global_text(&answer), status)?)
+        Ok(answer_solutions_telling(system, wanted, self.work, &INTERRUPTED, &mut |answer| tell(answer))?)
     }
 
     /// The exact set on which the rank drops.
-    fn tell_where(&self, system: &mut System, known: &dyn Fn(SoFar)) -> miette::Result<Status> {
+    fn singular_set(&self, system: &mut System, known: &dyn Fn(SoFar)) -> Result<Answered, Ended> {
         let mut tell = |answer| known(SoFar::Drops(Box::new(answer)));
         let answer = where_it_drops_telling(system, self.seed, &INTERRUPTED, &mut tell)
             .map_err(|why| Unusable::report(Code::Question, why, ""))?;
-        begin_to_tell();
         let status = if answer.is_exact() { Status::AsExpected } else { Status::CutOff };
         let (mut files, object) = (Files::default(), drops_json(&answer));
         if let Some(folder) = &self.out {
@@ -374,8 +453,13 @@ impl Rank {
             files.json(&folder.join("drops.json"), &object);
             files.announce(&folder.join("index.html"));
         }
-        files.print(Form::of(self.json), object, || drops_text(&answer), status)
+        Ok(Answered { files, printed: Printed { object, text: drops_text(&answer) }, status })
     }
+}
+
+/// Whether all numbers of solutions are there.
+fn status_of(values: &GlobalAnswer) -> Status {
+    if values.is_final() && !values.interrupted { Status::AsExpected } else { Status::CutOff }
 }
 
 /// Why there is no answer.
@@ -416,15 +500,13 @@ fn accessible(
     question: &RankQuestion<'_>,
     bar: &indicatif::ProgressBar,
     known: &dyn Fn(SoFar),
-    json: bool,
-) -> Result<Status, Ended> {
+) -> Result<Answered, Ended> {
     let mut tell = |answer| known(SoFar::Accessible(Box::new(answer)));
     let answer = answer_accessibility_telling(system, question, &mut tell);
     bar.finish_and_clear();
     let answer = answer?;
-    begin_to_tell();
     let is_whole = answer.is_final() && !answer.interrupted();
     let status = if is_whole { Status::AsExpected } else { Status::CutOff };
-    let files = Files::default();
-    Ok(files.print(Form::of(json), accessibility_json(&answer), || accessibility_text(&answer), status)?)
+    let printed = Printed { object: accessibility_json(&answer), text: accessibility_text(&answer) };
+    Ok(Answered { files: Files::default(), printed, status })
 }
