@@ -161,7 +161,7 @@ impl Printed {
     /// With the numbers of solutions, which stand first in a text.
     fn with(mut self, values: &GlobalAnswer) -> Printed {
         self.object["global"] = global_json(values);
-        Printed { text: format!("{}\n\n{}", global_text(values), self.text), ..self }
+        Printed { text: format!("{}\n\n{}", global_text(values).trim_end(), self.text), ..self }
     }
 }
 
