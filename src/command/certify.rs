@@ -34,7 +34,7 @@ use std::time::Instant;
   palmistry certify general.proof --state open.txt --merge parts --merged next.txt")]
 pub(crate) struct Certify {
     /// The proof file.
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// Other ranges than those of the file, for states and parameters; the same number twice holds one fixed.
     #[arg(
         long = "box",
@@ -71,7 +71,7 @@ pub(crate) struct Certify {
     map: Vec<String>,
     /// Write certify.json and the pictures curve.svg and map.svg into this folder.
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// Write the largest proved boxes, each with the rows of its minor, to a file that 'palmistry recheck' checks alone.
     #[arg(long, value_name = "FILE")]
     verdicts: Option<PathBuf>,

@@ -21,7 +21,7 @@ use std::path::PathBuf;
 pub(crate) struct Check {
     /// Proof files, or folders in which every .proof file is taken.
     #[arg(required = true, value_name = "FILE-OR-FOLDER")]
-    paths: Vec<PathBuf>,
+    pub(super) paths: Vec<PathBuf>,
     /// Print one JSON object: 'ok', 'files', and 'errors' with file, line, column, code, message and help.
     #[arg(long)]
     pub json: bool,

@@ -7,6 +7,7 @@ use super::terminal::layout;
 use clap::Args;
 use palmistry::checker::VerdictFile;
 use palmistry::claim::{Kept, Selection, UnmetPattern};
+use palmistry::foreign::shown;
 use palmistry::report::{
     ClaimsForm, ClaimsSummary, Shown, claim_json, claims_json, claims_text, junit, statement_latex_in,
 };
@@ -62,7 +63,8 @@ impl Claims {
         let selection = self.selection();
         let ids = systems.iter().flat_map(|system| &system.claims).map(|claim| claim.id.as_str());
         if let Some(unmet) = selection.unmet(ids) {
-            return Err(no_such_claim(&unmet));
+            let ids = systems.iter().flat_map(|system| &system.claims).map(|claim| claim.id.as_str());
+            return Err(no_such_claim(&unmet, ids));
         }
         for system in &mut systems {
             system.claims.retain(|claim| selection.keeps(&claim.id));
@@ -114,10 +116,19 @@ impl Claims {
 }
 
 /// That a pattern of `--only` is met by no claim.
-pub(crate) fn no_such_claim(unmet: &UnmetPattern) -> miette::Report {
-    let help = unmet.nearest.as_ref().map(|near| format!("perhaps you meant '{near}'"));
-    Unusable::report(Code::Question, unmet.to_string(), help.unwrap_or_default())
+pub(crate) fn no_such_claim<'a>(unmet: &UnmetPattern, ids: impl Iterator<Item = &'a str>) -> miette::Report {
+    let all: Vec<_> = ids.map(shown).collect();
+    let more = if all.len() > MOST_IDS { ", ..." } else { "" };
+    let help = match &unmet.nearest {
+        Some(near) => format!("perhaps you meant '{near}'"),
+        None if all.is_empty() => "there are no claims".to_owned(),
+        None => format!("the claims are {}{more}", all[..all.len().min(MOST_IDS)].join(", ")),
+    };
+    Unusable::report(Code::Question, unmet.to_string(), help)
 }
+
+/// So many ids are listed.
+const MOST_IDS: usize = 20;
 
 /// That there is nothing to decide.
 pub(crate) fn no_claims() -> miette::Report {

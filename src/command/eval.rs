@@ -21,7 +21,7 @@ use std::path::PathBuf;
   palmistry eval mysystem.proof 'det(rows)' --at x=1,y=2 --digits 40")]
 pub(crate) struct Eval {
     /// The proof file whose names the expression uses.
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// The expression, such as 'det(A)' or 'L(f, s1)'.
     #[arg(allow_hyphen_values = true)]
     expression: String,

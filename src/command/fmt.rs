@@ -24,7 +24,7 @@ const LONGEST_FILE: u64 = 16 << 20;
 pub(crate) struct Fmt {
     /// Proof files, or folders in which every .proof file is taken.
     #[arg(required = true, value_name = "FILE-OR-FOLDER")]
-    paths: Vec<PathBuf>,
+    pub(super) paths: Vec<PathBuf>,
     /// Write nothing; say which files are not in normal form.
     #[arg(long)]
     check: bool,

@@ -44,7 +44,7 @@ const LONGEST_FILE: u64 = 16 << 20;
 )]
 pub(crate) struct Import {
     /// The foreign file.
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// The format of the file, where it is not to be found out.
     #[arg(long, value_enum, value_name = "FORMAT")]
     from: Option<From>,

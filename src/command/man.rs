@@ -16,7 +16,7 @@ use std::path::PathBuf;
 pub(crate) struct Man {
     /// Write 'palmistry.1' and a page for each command, as 'palmistry-prove.1', into this folder.
     #[arg(long, value_name = "FOLDER")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
 }
 
 /// The name of each page's file and its text, that of the program first.

@@ -18,6 +18,7 @@ mod derived;
 mod eval;
 mod explain;
 mod fmt;
+mod given_files;
 mod import;
 mod interrupt;
 mod lab;
@@ -41,20 +42,25 @@ mod reduce;
 mod reparametrise;
 mod shards;
 mod slow_text;
+mod stage;
 mod stress;
 mod terminal;
 mod threads;
 mod trade;
+mod usage;
 mod verify;
 mod version;
 mod watch;
+mod what_to_do;
 
 use clap::{CommandFactory, Parser, Subcommand};
+use given_files::{Given, Kind, Written};
 use miette::{Diagnostic, Report};
 use output::Form;
 use palmistry::file;
 use palmistry::system::Code;
 use std::fmt::Display;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Verifies mathematics about nonlinear control systems: observability, identifiability, Lie derivatives, published equations.
@@ -163,7 +169,11 @@ impl Diagnostic for Unusable {
 
 impl Unusable {
     pub fn report(code: Code, message: impl Into<String>, help: impl Into<String>) -> Report {
-        Report::new(Unusable { code, message: message.into(), help: help.into() })
+        let (message, mut help) = (message.into(), help.into());
+        if help.is_empty() {
+            help.push_str(what_to_do::about(&message));
+        }
+        Report::new(Unusable { code, message, help })
     }
 }
 
@@ -186,7 +196,7 @@ pub fn run() -> ExitCode {
     if verb.is_a_stream() {
         output::print_in_lines();
     }
-    let result = threads::prepare().and_then(|()| verb.run());
+    let result = given_files::refuse(&verb).and_then(|()| threads::prepare()).and_then(|()| verb.run());
     match result {
         Ok(Status::AsExpected) => ExitCode::SUCCESS,
         Ok(Status::NotAsExpected) => ExitCode::from(1),
@@ -230,6 +240,90 @@ impl Verb {
         })
     }
 
+    /// The command, as it is called.
+    fn name(&self) -> &'static str {
+        match self {
+            Verb::Verify(_) => "verify",
+            Verb::Prove(_) => "prove",
+            Verb::Check(_) => "check",
+            Verb::Rank(_) => "rank",
+            Verb::Reduce(_) => "reduce",
+            Verb::Recheck(_) => "recheck",
+            Verb::Certify(_) => "certify",
+            Verb::Trade(_) => "trade",
+            Verb::Stress(_) => "stress",
+            Verb::Eval(_) => "eval",
+            Verb::Observe(_) => "observe",
+            Verb::Advise(_) => "advise",
+            Verb::Plan(_) => "plan",
+            Verb::Poses(_) => "poses",
+            Verb::Import(_) => "import",
+            Verb::Lab(_) => "lab",
+            Verb::New(_) => "new",
+            Verb::Demo(_) => "demo",
+            Verb::Explain(_) => "explain",
+            Verb::Fmt(_) => "fmt",
+            Verb::Lsp(_) => "lsp",
+            Verb::Completions(_) => "completions",
+            Verb::Man(_) => "man",
+        }
+    }
+
+    /// The files that it is given.
+    fn given(&self) -> Vec<Given<'_>> {
+        let one = |path, wanted| vec![Given::one(path, wanted)];
+        match self {
+            Verb::Verify(verb) => verb.path.iter().map(|path| Given::or_folder(path)).collect(),
+            Verb::Prove(verb) => verb.claims.paths.iter().map(|path| Given::or_folder(path)).collect(),
+            Verb::Check(verb) => verb.paths.iter().map(|path| Given::or_folder(path)).collect(),
+            Verb::Fmt(verb) => verb.paths.iter().map(|path| Given::or_folder(path)).collect(),
+            Verb::Rank(verb) => one(&verb.file, Kind::Proof),
+            Verb::Reduce(verb) => one(&verb.file, Kind::Proof),
+            Verb::Certify(verb) => one(&verb.file, Kind::Proof),
+            Verb::Trade(verb) => one(&verb.file, Kind::Proof),
+            Verb::Stress(verb) => verb.file.iter().map(|file| Given::one(file, Kind::Proof)).collect(),
+            Verb::Eval(verb) => one(&verb.file, Kind::Proof),
+            Verb::Recheck(verb) => one(&verb.file, Kind::Json),
+            Verb::Observe(verb) => scene_with_data(&verb.scene, verb.data.as_deref()),
+            Verb::Plan(verb) => scene_with_data(&verb.scene, verb.data.as_deref()),
+            Verb::Advise(verb) if verb.identify.is_empty() => one(&verb.file, Kind::Scene),
+            Verb::Advise(verb) => one(&verb.file, Kind::Proof),
+            Verb::Poses(verb) => verb.scene.iter().map(|scene| Given::one(scene, Kind::Scene)).collect(),
+            Verb::Import(verb) => one(&verb.file, Kind::Model),
+            _ => Vec::new(),
+        }
+    }
+
+    /// What it is to write and cannot, whatever it finds.
+    fn written(&self) -> Vec<Written<'_>> {
+        let tables: Vec<(&'static str, &Option<PathBuf>)> = match self {
+            Verb::Observe(verb) => vec![
+                ("--record", &verb.record),
+                ("--motion", &verb.motion),
+                ("--outline", &verb.outline),
+                ("--track", &verb.track),
+            ],
+            Verb::Rank(verb) => vec![("--table", &verb.table)],
+            _ => Vec::new(),
+        };
+        let folders: Vec<(&'static str, Option<&PathBuf>)> = match self {
+            Verb::Verify(verb) => vec![("--out", Some(&verb.out))],
+            Verb::Prove(verb) => vec![("--coq", verb.coq.as_ref())],
+            Verb::Observe(verb) => vec![("--out", verb.out.as_ref())],
+            Verb::Rank(verb) => vec![("--out", verb.out.as_ref())],
+            Verb::Certify(verb) => vec![("--out", verb.out.as_ref())],
+            Verb::Trade(verb) => vec![("--out", verb.out.as_ref())],
+            Verb::Stress(verb) => vec![("--out", verb.out.as_ref())],
+            Verb::Poses(verb) => vec![("--out", verb.out.as_ref())],
+            Verb::Man(verb) => vec![("--out", verb.out.as_ref())],
+            _ => Vec::new(),
+        };
+        let tables =
+            tables.into_iter().filter_map(|(option, path)| Some(Written::Table(option, path.as_deref()?)));
+        let folders = folders.into_iter().filter_map(|(option, path)| Some(Written::Folder(option, path?)));
+        tables.chain(folders).collect()
+    }
+
     /// Whether the command line asks for a stream of answers.
     fn is_a_stream(&self) -> bool {
         match self {
@@ -271,9 +365,15 @@ impl Verb {
     }
 }
 
+/// A scene, and a recording in place of its own.
+fn scene_with_data<'a>(scene: &'a Path, data: Option<&'a Path>) -> Vec<Given<'a>> {
+    let data = data.map(|data| Given::one(data, Kind::Table));
+    std::iter::once(Given::one(scene, Kind::Scene)).chain(data).collect()
+}
+
 /// What clap has to say: help and the version, which were asked for, or what is wrong with the command line.
 fn not_understood(error: &clap::Error) -> ExitCode {
-    let text = error.render().to_string();
+    let text = usage::mended(error);
     if !error.use_stderr() {
         return asked_for(text.trim_end_matches('\n'));
     }

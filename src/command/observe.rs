@@ -54,7 +54,7 @@ use std::path::{Path, PathBuf};
   palmistry observe SCENE --record - | palmistry observe SCENE --data - --json")]
 pub(crate) struct Observe {
     /// The scene.
-    scene: PathBuf,
+    pub(super) scene: PathBuf,
     /// Measurements from a file (CSV or Parquet) instead of a simulation; - is standard input (CSV), answered window by window.
     #[arg(long, value_name = "FILE")]
     pub(super) data: Option<PathBuf>,

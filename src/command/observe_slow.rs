@@ -3,7 +3,7 @@
 use super::interrupt::{begin_to_tell, interrupted};
 use super::observe::Observe;
 use super::output::{Files, Form, progress};
-use super::slow_text::{KeptSlow, SlowTold};
+use super::slow_text::{KeptSlow, SlowFound};
 use super::{Status, Unusable};
 use palmistry::experiment::slow::{SlowExperiment, SlowScene, StudyRow, slow_study};
 use palmistry::system::Code;
@@ -75,7 +75,7 @@ impl Observe {
         bar.finish_and_clear();
         let settings = experiment.scene.study.clone().filter(|_| self.studies);
         let scene = experiment.scene.clone();
-        let told = SlowTold {
+        let told = SlowFound {
             experiment,
             answers,
             study: Vec::new(),

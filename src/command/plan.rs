@@ -31,10 +31,10 @@ use std::path::{Path, PathBuf};
 Exit status: 0 nothing that is estimated is shown to be unobservable, 1 something is, or a claim of the least model is not proved, 2 the scene cannot be used.")]
 pub(crate) struct Plan {
     /// The scene.
-    scene: PathBuf,
+    pub(super) scene: PathBuf,
     /// Measurements from a file (CSV or Parquet) instead of a simulation.
     #[arg(long, value_name = "FILE")]
-    data: Option<PathBuf>,
+    pub(super) data: Option<PathBuf>,
     /// Take this seed and not the scene's.
     #[arg(long, value_name = "S")]
     seed: Option<u64>,

@@ -34,7 +34,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(crate) struct Poses {
     /// A scene whose body is taken.
     #[arg(conflicts_with_all = ["shape", "bodies"])]
-    scene: Option<PathBuf>,
+    pub(super) scene: Option<PathBuf>,
     /// A body: spline:Q1,Q2,Q3 (radii of section 3.4), centripetal:Q1,Q2,Q3, ellipse:A,B, or harmonics:MEAN,P2,Q2,P3,Q3... of the support function, in m.
     #[arg(long, value_name = "BODY", conflicts_with = "bodies")]
     shape: Option<String>,
@@ -79,7 +79,7 @@ pub(crate) struct Poses {
     seed: u64,
     /// Write a page with pictures (index.html) and poses.json into this folder.
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// Print one JSON object: of a body its 'components', 'certificate', 'touch_all' and more; of random bodies 'families'.
     #[arg(long)]
     pub json: bool,

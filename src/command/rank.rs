@@ -54,7 +54,7 @@ use std::sync::{Arc, Mutex, PoisonError};
   palmistry rank mysystem.proof --samples 1000000 --merge parts                and the answer of all")]
 pub(crate) struct Rank {
     /// The proof file.
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// How many states are drawn from the sample box, to see where the rank drops; with 0 only the generic rank is decided, which takes
     /// no Lie derivatives and no time [default: 1000, where the Lie derivatives are short enough to be written down in a moment, else 0].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=1_000_000_000_000_000))]
@@ -103,7 +103,7 @@ pub(crate) struct Rank {
     where_it_drops: bool,
     /// Write a page with these sets and their proof (index.html), and drops.json, into this folder.
     #[arg(long, value_name = "DIR", requires = "where_it_drops")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// How many values of each unknown give the same outputs: one (it is globally identifiable or observable), finitely many over the
     /// complex numbers, or infinitely many. For rational systems, generically, by Groebner bases at random points modulo random primes;
     /// each number says whether it is proved or computed. States are sampled only where another option asks for it; conditions
@@ -120,7 +120,7 @@ pub(crate) struct Rank {
     /// Write a row for each sampled state to a file, CSV or Parquet by its extension: index, rank, certified, smallest singular value,
     /// condition. With '--shard' those of its states.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["accessible", "where_it_drops", "merge", "missing"])]
-    table: Option<PathBuf>,
+    pub(super) table: Option<PathBuf>,
     /// Add the coordinates of each state to that table, angles in radians.
     #[arg(long, requires = "table")]
     coordinates: bool,

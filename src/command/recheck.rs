@@ -23,7 +23,7 @@ use std::path::PathBuf;
   palmistry recheck claims.json --seed 2                   proofs are tried at other states")]
 pub(crate) struct Recheck {
     /// The verdict file.
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// The folder from which the names of proof files are read.
     #[arg(long, default_value = ".", value_name = "FOLDER")]
     proofs: PathBuf,

@@ -31,7 +31,7 @@ use std::path::{Path, PathBuf};
 Exit status: 0 all claims of the new file are proved, 1 some are not, 2 there is no such model.")]
 pub(crate) struct Reduce {
     /// The proof file.
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// Conditions, as in 'omega1 = 0' or 'omega2 = omega1', or several: 'x = 0, y = 1' (may be repeated).
     #[arg(long, value_name = "CONDITION")]
     fix: Vec<String>,

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A scene that was observed, and how that is to be told.
-pub(super) struct SlowTold {
+pub(super) struct SlowFound {
     pub experiment: SlowExperiment,
     pub answers: SlowAnswers,
     pub study: Vec<StudyRow>,
@@ -18,7 +18,7 @@ pub(super) struct SlowTold {
     pub no_times: bool,
 }
 
-impl SlowTold {
+impl SlowFound {
     pub fn tell(mut self, mut files: Files) -> miette::Result<Status> {
         if self.no_times {
             self.answers.seconds = [f64::NAN; 3];
@@ -44,10 +44,10 @@ impl SlowTold {
 
 /// What a study has come to: a body of many samples takes longer than an interrupt leaves.
 #[derive(Clone, Default)]
-pub(super) struct KeptSlow(Arc<Mutex<Option<SlowTold>>>);
+pub(super) struct KeptSlow(Arc<Mutex<Option<SlowFound>>>);
 
 impl KeptSlow {
-    pub fn with<T>(&self, act: impl FnOnce(&mut Option<SlowTold>) -> T) -> T {
+    pub fn with<T>(&self, act: impl FnOnce(&mut Option<SlowFound>) -> T) -> T {
         act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 

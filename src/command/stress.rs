@@ -37,7 +37,7 @@ use std::sync::{Arc, Mutex, PoisonError};
   palmistry stress --out stress")]
 pub(crate) struct Stress {
     /// A proof file; without one, a paper that came with the program.
-    file: Option<PathBuf>,
+    pub(super) file: Option<PathBuf>,
     /// Which rows: the file's own matrix 'rows' where it defines one, or the full codistribution.
     #[arg(long, value_enum, default_value_t = Which::Own, value_name = "WHICH")]
     rows: Which,
@@ -52,7 +52,7 @@ pub(crate) struct Stress {
     seed: u64,
     /// Write the pictures (SVG) and stress.json into this folder.
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// A paper that came with the program, by the name of its folder.
     #[arg(long, value_name = "NAME", conflicts_with = "file")]
     paper: Option<String>,

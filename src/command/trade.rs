@@ -24,7 +24,7 @@ const ROUNDS: usize = 15;
   palmistry trade mysystem.proof --out trade")]
 pub(crate) struct Trade {
     /// The proof file.
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// How many states are drawn from the sample box.
     #[arg(long, default_value_t = 1000, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=20_000))]
     samples: u64,
@@ -33,7 +33,7 @@ pub(crate) struct Trade {
     seed: u64,
     /// Write the picture to trade.svg, and what was measured to trade.json, in this folder.
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// Print one JSON object with 'derivatives', 'ranks', 'combinations', 'left_out' and more.
     #[arg(long)]
     pub json: bool,

@@ -3,6 +3,7 @@
 use super::coq::Theorems;
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
 use super::output::{Files, Form, progress};
+use super::stage::Stage;
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::System;
@@ -15,6 +16,7 @@ use palmistry::report::{
 use palmistry::system::Code;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 /// Takes a paper through everything: claims, ranks on named sets, maps, lines, numbers in print, reductions, speed against
 /// accuracy, the extremes, certificates, scenes; and writes a page with pictures.
@@ -30,13 +32,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(crate) struct Verify {
     /// A folder of proof files, or one proof file.
     #[arg(value_name = "FOLDER-OR-FILE", conflicts_with = "paper")]
-    path: Option<PathBuf>,
+    pub(super) path: Option<PathBuf>,
     /// A paper that came with the program, by the name of its folder.
     #[arg(long, value_name = "NAME")]
     paper: Option<String>,
     /// Where to write index.html, verify.json and errata.md.
     #[arg(long, value_name = "DIR", default_value = "verify")]
-    out: PathBuf,
+    pub(super) out: PathBuf,
     /// Seed of the random points and the sampled states.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
@@ -50,6 +52,9 @@ pub(crate) struct Verify {
     #[arg(long)]
     pub json: bool,
 }
+
+/// So long after a line of progress comes the next, where no bar shows it.
+const TELL_EVERY: Duration = Duration::from_secs(15);
 
 /// The folder of theorems, beside the page.
 const THEOREMS: &str = "coq";
@@ -85,6 +90,8 @@ impl Verify {
         };
         let paper = Paper::read(&path)?;
         let bar = progress(1, "verifying");
+        let stage = Stage::default();
+        let _lines = stage.lines_every(TELL_EVERY);
         let options = VerifyOptions {
             seed: self.seed,
             interrupt: &INTERRUPTED,
@@ -92,7 +99,9 @@ impl Verify {
             progress: &|what, done, all| {
                 bar.set_length(all);
                 bar.set_position(done);
-                bar.set_message(shown(what).chars().take(28).collect::<String>());
+                let what = shown(what);
+                bar.set_message(what.chars().take(28).collect::<String>());
+                stage.is(&what, done, all);
             },
         };
         let result = verify_into(&paper, &options, found);

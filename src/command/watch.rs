@@ -132,8 +132,8 @@ impl Watch {
         let known: Vec<&Decided> = paths.iter().filter_map(|path| self.files.get(path)).collect();
         let outcomes: Vec<Outcome> = known.iter().flat_map(|file| file.outcomes.iter().cloned()).collect();
         let wrong: Vec<&Examination> = known.iter().filter_map(|file| file.wrong.as_ref()).collect();
-        let ids = known.iter().flat_map(|file| &file.ids).map(String::as_str);
-        let unmet = self.asked.selection().unmet(ids).filter(|_| wrong.is_empty());
+        let ids = || known.iter().flat_map(|file| &file.ids).map(String::as_str);
+        let unmet = self.asked.selection().unmet(ids()).filter(|_| wrong.is_empty());
         let claims: usize = known.iter().map(|file| file.claims).sum();
         let summary = ClaimsSummary { claims: Some(claims), seconds: begin.elapsed().as_secs_f64() };
         let written = self.asked.written(&outcomes);
@@ -164,7 +164,7 @@ impl Watch {
             }
         }
         if let Some(unmet) = unmet {
-            file::note(&format!("{:?}", no_such_claim(&unmet)));
+            file::note(&format!("{:?}", no_such_claim(&unmet, ids())));
         } else if claims == 0 && wrong.is_empty() {
             file::note(&format!("{:?}", no_claims()));
         }

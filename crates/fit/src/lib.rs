@@ -21,7 +21,7 @@ mod trust;
 pub use information::{Information, WeakDirection};
 pub use laws::{ErrorLaw, ErrorScale, ParameterScale, Prior, PriorLaw};
 pub use likelihood::{Likelihood, SimulatedExperiments};
-pub use problem::{JointExperiment, JointMeasurement, JointProblem, Phase, SoughtParameter};
+pub use problem::{EstimatedParameter, JointExperiment, JointMeasurement, JointProblem, Phase};
 pub use profile::{ALLOWED, ParameterProfile, profile};
 pub use search::{JointFit, SearchEnd, StartEnd, fit};
 pub use simulate::{Exactness, NotFollowed};

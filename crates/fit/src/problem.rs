@@ -6,7 +6,7 @@ use palmistry_math::expression::{NodeId, Symbol};
 
 /// A parameter that is estimated.
 #[derive(Clone, Debug)]
-pub struct SoughtParameter {
+pub struct EstimatedParameter {
     /// Its name.
     pub name: String,
     /// What stands for it in formulas.
@@ -23,7 +23,7 @@ pub struct SoughtParameter {
     pub prior: Option<Prior>,
 }
 
-impl SoughtParameter {
+impl EstimatedParameter {
     /// Its bounds, on its scale.
     pub fn scaled_bounds(&self) -> [f64; 2] {
         self.bounds.map(|bound| self.scale.scaled(bound))
@@ -82,7 +82,7 @@ pub struct JointProblem {
     /// The place of the state that is time, where there is one: it never comes to rest.
     pub clock: Option<usize>,
     /// The estimated parameters.
-    pub parameters: Vec<SoughtParameter>,
+    pub parameters: Vec<EstimatedParameter>,
     /// The experiments.
     pub experiments: Vec<JointExperiment>,
     /// What was measured in them.

@@ -143,7 +143,7 @@ fn from_near(
     let mut why = String::new();
     for _ in 0..DRAWS {
         let size = KICK[0] + random.random::<f64>() * (KICK[1] - KICK[0]);
-        let kicked = |(one, place): (&super::SoughtParameter, &f64)| {
+        let kicked = |(one, place): (&super::EstimatedParameter, &f64)| {
             let [low, high] = one.scaled_bounds();
             let unit = match one.scale {
                 super::ParameterScale::Linear => (high - low) / 8.0,
@@ -208,7 +208,7 @@ fn from_draws(
     let mut best: Option<(Vec<f64>, SimulatedExperiments)> = None;
     let mut candidates = 0;
     for _ in 0..DRAWS {
-        let draw = |one: &super::SoughtParameter| {
+        let draw = |one: &super::EstimatedParameter| {
             let [low, high] = one.scaled_bounds();
             let [from, to] = one.starts.map_or([low, high], |range| range.map(|end| one.scale.scaled(end)));
             (from + random.random::<f64>() * (to - from)).clamp(low, high)

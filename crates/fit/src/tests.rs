@@ -74,7 +74,7 @@ impl Made<'_> {
         let parameters = self
             .parameters
             .iter()
-            .map(|(name, low, high, scale)| SoughtParameter {
+            .map(|(name, low, high, scale)| EstimatedParameter {
                 name: (*name).to_owned(),
                 symbol: system.find_symbol(name).unwrap(),
                 scale: *scale,

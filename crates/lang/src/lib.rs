@@ -38,6 +38,7 @@ mod lie;
 mod looks;
 mod matrices;
 mod model;
+mod nearby;
 mod outline;
 mod problems;
 mod read;
@@ -73,6 +74,8 @@ pub use grammar::parse_statement;
 pub use model::{
     Assignment, Field, FieldRole, Kind, Looks, Matrix, Range, Role, SymbolInfo, System, Time, Value,
 };
+#[doc(hidden)]
+pub use nearby::nearest_file;
 #[doc(hidden)]
 pub use outline::{Declaration, DeclarationKind, Outline, without_claims};
 #[doc(hidden)]

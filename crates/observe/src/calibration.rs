@@ -60,7 +60,7 @@ pub fn declare(system: &mut System, names: &[String]) {
 }
 
 /// The gain, bias and delay of a column that are estimated, as symbols.
-pub struct Sought {
+pub struct EstimatedCalibration {
     /// The column.
     pub column: Symbol,
     /// Its gain, where one is estimated.
@@ -72,15 +72,15 @@ pub struct Sought {
 }
 
 /// What is estimated of each column.
-pub fn sought(system: &System, followed: &[String]) -> Vec<Sought> {
-    let mut all: Vec<Sought> = Vec::new();
+pub fn estimated_calibrations(system: &System, followed: &[String]) -> Vec<EstimatedCalibration> {
+    let mut all: Vec<EstimatedCalibration> = Vec::new();
     for name in followed {
         let Some((column, kind)) = CalibrationKind::of(name) else { continue };
         let (Some(column), Some(symbol)) = (system.find_symbol(column), system.find_symbol(name)) else {
             continue;
         };
         let place = all.iter().position(|other| other.column == column).unwrap_or_else(|| {
-            all.push(Sought { column, gain: None, bias: None, delay: None });
+            all.push(EstimatedCalibration { column, gain: None, bias: None, delay: None });
             all.len() - 1
         });
         match kind {
@@ -100,9 +100,9 @@ pub(super) fn put_in(
     rates: &mut [NodeId],
     outputs: &mut [(String, NodeId)],
 ) {
-    let all = sought(system, followed);
+    let all = estimated_calibrations(system, followed);
     let mut true_values = HashMap::new();
-    for Sought { column, gain, bias, .. } in all {
+    for EstimatedCalibration { column, gain, bias, .. } in all {
         let name = system.symbol_name(column).to_owned();
         let own = system.graph.symbol(column);
         let [gain, bias] = [gain, bias].map(|symbol| symbol.map(|symbol| system.graph.symbol(symbol)));

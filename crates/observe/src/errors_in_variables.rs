@@ -128,11 +128,11 @@ impl MovingWindow {
         rows: &std::ops::Range<usize>,
         clamped: &[usize],
     ) -> Vec<f64> {
-        self.seen_at(task, belief, rows, clamped).0
+        self.bounds_and_condition(task, belief, rows, clamped).0
     }
 
     /// The same, and the condition of the scaled sensitivities.
-    pub fn seen_at(
+    pub fn bounds_and_condition(
         &self,
         task: &Task<'_>,
         belief: &[f64],

@@ -170,7 +170,8 @@ impl ModelFlow<'_> {
             |time: f64, refusal: Refusal| Lost { time, why: format!("the model has no value: {refusal}") };
         let arithmetic = Duals::<J>::default;
         let rates = model.rates.program.load(arithmetic()).map_err(|refusal| refuse(times[0], refusal))?;
-        let seen = model.seen.program.load(arithmetic()).map_err(|refusal| refuse(times[0], refusal))?;
+        let seen =
+            model.output_formulas.program.load(arithmetic()).map_err(|refusal| refuse(times[0], refusal))?;
         let (registers, room) = (RefCell::new(Vec::new()), RefCell::new((Vec::new(), Vec::new())));
         type LoadedFormulas<'l, J> = palmistry_math::expression::Loaded<'l, Duals<J>>;
         let input = |source: &InputSource, y: &[f64], given: &[f64]| match *source {
@@ -180,7 +181,8 @@ impl ModelFlow<'_> {
         let seen_at = |time: f64, y: &[f64]| {
             let mut given = vec![0.0; model.columns.len()];
             self.signals.at(&model.columns, time, &mut given);
-            let inputs: Vec<J> = model.seen.sources.iter().map(|source| input(source, y, &given)).collect();
+            let inputs: Vec<J> =
+                model.output_formulas.sources.iter().map(|source| input(source, y, &given)).collect();
             seen.run(&inputs, &mut registers.borrow_mut())
         };
         let evaluate_at = |formulas: &Formulas, loaded: &LoadedFormulas<'_, J>, time: J, states: &[J]| {
@@ -206,7 +208,7 @@ impl ModelFlow<'_> {
                 let Some(delay) = delay.map(|place| states[place]) else { continue };
                 let before = states_before(&followed, time, &states, delay, self.signals.between())
                     .map_err(|why| Lost { time, why })?;
-                let then = evaluate_at(&model.seen, &seen, J::constant(time) - delay, &before);
+                let then = evaluate_at(&model.output_formulas, &seen, J::constant(time) - delay, &before);
                 values[output] = then.map_err(|error| refuse(time, error.refusal))?[output];
             }
             Ok(values)

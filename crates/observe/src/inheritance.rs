@@ -46,8 +46,14 @@ impl MovingWindow {
             let (mut is_tested, mut meets) = (false, None);
             // too few samples to compare are only followed, and known if those before were
             if rows.len() >= fewest {
-                let grown =
-                    self.grown_by_unseen(task, &rows, unobserved.as_deref(), &learned, anew, &mut track);
+                let grown = self.grown_by_unobservable(
+                    task,
+                    &rows,
+                    unobserved.as_deref(),
+                    &learned,
+                    anew,
+                    &mut track,
+                );
                 let is_grown = grown.is_some();
                 let (own, update, others) = match grown {
                     Some((before, update, others)) => {
@@ -65,7 +71,9 @@ impl MovingWindow {
                 };
                 let is_unobservable = matches!(update.end, UpdateEnd::Unobservable { .. });
                 unobserved = match is_unobservable && self.may_grow(task, clamped) {
-                    true => self.unseen_after(&rows, unobserved.as_deref(), &learned, &update, &mut track),
+                    true => {
+                        self.unobservable_after(&rows, unobserved.as_deref(), &learned, &update, &mut track)
+                    }
                     false => None,
                 };
                 learned.is_asked |= is_asked(&update);

@@ -67,7 +67,7 @@ pub use bound::CramerRaoBound;
 pub(crate) use bound::cramer_rao;
 pub use calibration::CalibrationKind;
 #[doc(hidden)]
-pub use calibration::{Sought, declare, sought};
+pub use calibration::{EstimatedCalibration, declare, estimated_calibrations};
 #[doc(hidden)]
 pub use chi_square::exceeded_with;
 pub use drift::Drift;

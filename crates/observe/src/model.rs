@@ -90,7 +90,7 @@ pub struct Model {
     /// The outputs that depend on them, as they are written; each is a column of the signals, too.
     pub outputs: Vec<String>,
     pub(super) rates: Formulas,
-    pub(super) seen: Formulas,
+    pub(super) output_formulas: Formulas,
     /// The columns of the signals that the formulas need.
     pub columns: Vec<usize>,
     /// The columns of the outputs; none of those that are zero, which tie states to measurements.
@@ -133,7 +133,7 @@ impl Model {
             states: question.followed.clone(),
             outputs: Vec::new(),
             rates: Formulas { program: Program::plain(&system.graph, &[]), sources: Vec::new() },
-            seen: Formulas { program: Program::plain(&system.graph, &[]), sources: Vec::new() },
+            output_formulas: Formulas { program: Program::plain(&system.graph, &[]), sources: Vec::new() },
             columns: Vec::new(),
             measured: Vec::new(),
             delays: Vec::new(),
@@ -160,7 +160,7 @@ impl Model {
         let delay = |output: &String| model.find(&format!("{output}.{}", CalibrationKind::Delay.word()));
         model.delays = model.outputs.iter().map(delay).collect();
         model.rates = model.formulas(&model.rate_nodes.clone(), &HashMap::new(), signals)?;
-        model.seen = model.formulas(&model.output_nodes.clone(), &HashMap::new(), signals)?;
+        model.output_formulas = model.formulas(&model.output_nodes.clone(), &HashMap::new(), signals)?;
         Ok(model)
     }
 
@@ -210,7 +210,7 @@ impl Model {
 
     /// The names of the columns that the outputs depend on, directly.
     pub fn read_columns<'s>(&self, signals: &'s Signals) -> Vec<&'s str> {
-        let sources = self.seen.sources.iter().filter_map(|source| match source {
+        let sources = self.output_formulas.sources.iter().filter_map(|source| match source {
             InputSource::Column(place) => Some(signals.names()[self.columns[*place]].as_str()),
             InputSource::State(_) | InputSource::Rate(_) => None,
         });

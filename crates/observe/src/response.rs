@@ -44,7 +44,7 @@ pub enum ResponseError {
     Moves { name: String },
     /// A function cannot be read.
     #[error("{name} = {text}: {why}")]
-    Function { name: String, text: String, why: String },
+    Function { name: String, text: String, why: String, help: Option<String> },
     /// There are no outputs.
     #[error("the system has no outputs: there is nothing to read")]
     NoOutput,
@@ -91,7 +91,8 @@ pub fn response(
     let mut constants =
         parameter_values(&mut system, &question.start, |name| question.functions.contains_key(name))?;
     constants.retain(|symbol, _| !moving.contains(symbol));
-    let functions = functions(&mut system, question, time, &constants)?;
+    let functions =
+        functions(&mut system, question, time, &constants, times.first().copied().unwrap_or_default())?;
     let mut values = constants.clone();
     values.extend(functions.iter().map(|(symbol, node)| (*symbol, *node)));
     let nodes: Vec<NodeId> = rates.iter().copied().chain(outputs.iter().map(|(_, node)| *node)).collect();
@@ -150,7 +151,9 @@ fn known_names(system: &System, question: &ResponseQuestion) -> Result<(), Respo
     for name in question.start.keys().chain(question.functions.keys()) {
         if system.find_symbol(name).is_none() {
             let names: Vec<&str> = system.symbols().map(|(symbol, _)| system.symbol_name(symbol)).collect();
-            let near = nearest(name, names.iter().copied());
+            // a name that differs in capital letters alone before all others
+            let same = names.iter().find(|other| other.eq_ignore_ascii_case(name)).copied();
+            let near = same.or_else(|| nearest(name, names.iter().copied()));
             let near = near.map_or_else(String::new, |near| format!("; perhaps you meant '{near}'"));
             return Err(ResponseError::NoSymbol { name: name.clone(), near });
         }
@@ -189,12 +192,19 @@ fn functions(
     question: &ResponseQuestion,
     time: Symbol,
     constants: &HashMap<Symbol, NodeId>,
+    first: f64,
 ) -> Result<Vec<(Symbol, NodeId)>, ResponseError> {
     let mut found = Vec::new();
     let chains = system.signal_chains();
     for (name, text) in &question.functions {
-        let wrong = |why: String| ResponseError::Function { name: name.clone(), text: text.clone(), why };
-        let value = system.evaluate_text(text).map_err(|error: ReadError| wrong(error.to_string()))?;
+        let wrong_as = |why: String, help: Option<String>| {
+            let (name, text) = (name.clone(), text.clone());
+            ResponseError::Function { name, text, why, help }
+        };
+        let wrong = |why: String| wrong_as(why, None);
+        let value = system
+            .evaluate_text(text)
+            .map_err(|error: ReadError| wrong_as(error.to_string(), error.help.clone()))?;
         let node = value.as_number().ok_or_else(|| wrong("it is no number".to_owned()))?;
         let mut node = system.graph.substitute(&[node], constants)[0];
         let others = system.graph.symbols_of([node]);
@@ -203,6 +213,10 @@ fn functions(
             return Err(wrong(format!(
                 "a function of the time t alone is meant, and it depends on '{other}'"
             )));
+        }
+        // without this it would be the state that has no value
+        if let Some(refusal) = refusal_at(system, node, first) {
+            return Err(wrong(format!("it has no value at t = {first}: {refusal}")));
         }
         let Some(symbol) = system.find_symbol(name) else { continue };
         found.push((symbol, node));
@@ -213,6 +227,18 @@ fn functions(
         }
     }
     Ok(found)
+}
+
+/// Why a function of time has no value at a time.
+fn refusal_at(system: &System, node: NodeId, time: f64) -> Option<Refusal> {
+    let program = Program::plain(&system.graph, &[node]);
+    let inputs = vec![time; program.inputs().len()];
+    let loaded = program.load(Duals::<f64>::default());
+    match loaded.map(|loaded| loaded.run(&inputs, &mut Vec::new()).map(|_| ())) {
+        Err(refusal) => Some(refusal),
+        Ok(Err(error)) => Some(error.refusal),
+        Ok(Ok(())) => None,
+    }
 }
 
 /// Rates, then outputs, then functions, as expressions of the moving states and time.

@@ -25,7 +25,7 @@ const FRACTIONS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 #[derive(Clone, Debug)]
 pub(super) struct Sensitivity {
     /// How each sample of the window depends on the state's error and on its own measurements' errors.
-    pub samples: Vec<Seen>,
+    pub samples: Vec<SampleOutputs>,
     /// From each sample of the window to the next.
     pub steps: Vec<Step>,
     /// The columns, by their places in the signals.
@@ -42,7 +42,7 @@ pub(super) struct Sensitivity {
 
 /// What is expected of the outputs at a sample, by the errors.
 #[derive(Clone, Debug)]
-pub(super) struct Seen {
+pub(super) struct SampleOutputs {
     /// A row an output, a column a state.
     pub by_states: DMatrix<f64>,
     /// A row an output, a column one of the columns of the signals at this very sample.
@@ -94,7 +94,7 @@ impl Sensitivity {
             .collect::<Result<_, _>>()?;
         let seen = |(i, time): (usize, &f64)| {
             let here = &linear[i * FRACTIONS.len()];
-            Seen {
+            SampleOutputs {
                 by_states: here.by_states[1].clone(),
                 by_columns: here.by_columns[1].clone(),
                 own: signals.times().partition_point(|other| other < time) - first,
@@ -240,7 +240,7 @@ fn linearise(flow: &ModelFlow<'_>, time: f64, state: &[f64], columns: &[usize]) 
         Ok(all)
     };
     let rates = derivatives(&model.rates, n)?;
-    let seen = derivatives(&model.seen, model.outputs.len())?;
+    let seen = derivatives(&model.output_formulas, model.outputs.len())?;
     let part = |from: usize, count: usize| [&rates, &seen].map(|all| all.columns(from, count).into_owned());
     Ok(Linear { by_states: part(0, n), by_columns: part(n, columns.len()) })
 }

@@ -22,7 +22,7 @@ impl MovingWindow {
     }
 
     /// The update of a window together with the uninformative ones before it, where the measurements bear it out, and what was known before them.
-    pub(super) fn grown_by_unseen<'u>(
+    pub(super) fn grown_by_unobservable<'u>(
         &self,
         task: &Task<'_>,
         rows: &Range<usize>,
@@ -51,7 +51,7 @@ impl MovingWindow {
     }
 
     /// What the next window takes as well, after one that is uninformative.
-    pub(super) fn unseen_after(
+    pub(super) fn unobservable_after(
         &self,
         rows: &Range<usize>,
         unobserved: Option<&UninformativeWindows>,

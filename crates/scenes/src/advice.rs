@@ -228,7 +228,7 @@ fn expected(scene: &Scene, courses: &[Course; 2]) -> Option<ExpectedBounds> {
     while row + observer.window < times.len() {
         let rows = row..row + observer.window + 1;
         let truth = experiment.truth_at(times[row])?;
-        let (bounds, condition) = observer.seen_at(&task, &truth, &rows, &[]);
+        let (bounds, condition) = observer.bounds_and_condition(&task, &truth, &rows, &[]);
         let ratios = bounds.iter().zip(&task.sizes).map(|(bound, size)| bound / size);
         let largest = ratios.fold(0.0, f64::max);
         seen += usize::from(largest <= observer.unobservable_above);

@@ -237,7 +237,7 @@ pub(super) fn tell(
 ///
 /// # Errors
 /// Which one is not identifiable, and from which others it cannot be distinguished.
-pub(super) fn are_told(
+pub(super) fn are_determined(
     scene: &Scene,
     system: &System,
     question: &EstimateQuestion,
@@ -272,6 +272,6 @@ pub(super) fn truth(scene: &Scene, name: &str) -> Option<f64> {
 }
 
 /// Whether a name asks for gain, bias or delay of something that the model knows.
-pub(super) fn is_sought(system: &System, name: &str) -> bool {
+pub(super) fn is_calibration(system: &System, name: &str) -> bool {
     CalibrationKind::of(name).is_some_and(|(column, _)| system.find_symbol(column).is_some())
 }

@@ -3,11 +3,12 @@
 use super::channels;
 use super::known_motion::KnownMotion;
 use super::least::{self, ConstantColumns};
+use super::scene::hints::near;
 use super::scene::{Guess, Scene, SceneError};
 use super::simulation::{Simulation, body, constants};
 use super::system_motion::SystemMotion;
 use super::unguided::Unguided;
-use palmistry_lang::{Kind, System, nearest};
+use palmistry_lang::{Kind, System};
 use palmistry_math::expression::{NodeId, Symbol};
 use palmistry_math::number::rational_to_f64;
 use palmistry_observe::{
@@ -55,13 +56,13 @@ impl Groundwork {
         };
         known_states(&scene, &system)?;
         let begun = match (&scene.simulated, &scene.observer.guess, simulates) {
-            (Some(simulated), Guess::Off(_), false) => Some(Simulation::beginning(&scene, simulated)?),
+            (Some(simulated), Guess::Off(_), false) => Some(Simulation::of_first_samples(&scene, simulated)?),
             _ => None,
         };
         // a recording of what the scene describes gets the same constants
         let described = match (&scene.system, &scene.robot) {
             (Some(own), _) if simulates => Some(SystemMotion::of(&scene, &system, own)?),
-            (Some(own), _) => Some(SystemMotion::beginning(&scene, &system, own)?),
+            (Some(own), _) => Some(SystemMotion::of_first_samples(&scene, &system, own)?),
             (None, Some(robot)) => Some(SystemMotion::of_robot(&scene, robot, simulates)?),
             (None, None) => None,
         };
@@ -101,12 +102,37 @@ impl Groundwork {
     }
 }
 
+/// The signals that somebody knows, with their derivatives.
+pub(super) fn known_signals(system: &System) -> Vec<Symbol> {
+    let known = system.known_signals();
+    let chains = system.signal_chains().into_iter();
+    chains.filter(|chain| chain.first().is_some_and(|first| known.contains(first))).flatten().collect()
+}
+
 /// Checks that everything estimated is a state of the system, before measurements or a first guess are asked for.
 fn known_states(scene: &Scene, system: &System) -> Result<(), SceneError> {
-    let states: Vec<&str> = system.states.iter().map(|state| system.symbol_name(*state)).collect();
+    let signals = known_signals(system);
+    let states = system.states.iter().filter(|state| !signals.contains(state));
+    let states: Vec<&str> = states.map(|state| system.symbol_name(*state)).collect();
     for (index, name) in scene.observer.estimate.iter().enumerate() {
-        if !states.contains(&name.as_str()) && !channels::is_sought(system, name) {
-            let help = match nearest(name, states.iter().copied()) {
+        let is_signal = system.find_symbol(name).is_some_and(|symbol| signals.contains(&symbol));
+        if is_signal || scene.system.as_ref().is_some_and(|own| own.inputs.contains_key(name)) {
+            let message =
+                format!("'{name}' is an input: it is measured, or a function of time, and not estimated");
+            let help = format!("leave it out; states are {}", states.join(", "));
+            return Err(scene.error_at(
+                &format!("observer.estimate[{index}]"),
+                message,
+                "estimated here",
+                help,
+            ));
+        }
+        if !states.contains(&name.as_str()) && !channels::is_calibration(system, name) {
+            let help = match near(name, &states) {
+                _ if name.contains(',') => {
+                    "each name stands in quotation marks of its own, as in [\"x\", \"y\"]".to_owned()
+                }
+                _ if name == "all" => format!("name each: {}", states.join(", ")),
                 Some(near) => format!("perhaps you meant '{near}'"),
                 None => "an observer estimates states; constants are given".to_owned(),
             };

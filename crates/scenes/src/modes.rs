@@ -38,7 +38,7 @@ pub struct ModeEstimate {
     /// The mode.
     pub name: String,
     /// The estimated states, in the order of the update's estimate.
-    pub sought: Vec<String>,
+    pub estimated: Vec<String>,
     /// The search: none where it was not run.
     pub update: Option<Update>,
     /// The rank along its motion through the window, where it decides who may answer: of the motion that was found, where the measurements bear one
@@ -121,11 +121,11 @@ impl Experiment {
         for first in (0..times.len() - window).step_by(window) {
             let one = |(place, (name, mode)): (usize, &(String, Experiment))| {
                 let own = mode.window_of(first, window)?;
-                let sought = own.names().into_iter().map(str::to_owned).collect();
+                let estimated = own.names().into_iter().map(str::to_owned).collect();
                 let (update, came_to) =
                     own.search(mode.starts(&learned, reached[place].clone()), interrupt)?;
                 let name = name.clone();
-                Ok((ModeEstimate { name, sought, update, rank: None, objection: None }, came_to))
+                Ok((ModeEstimate { name, estimated, update, rank: None, objection: None }, came_to))
             };
             // each mode by itself: no mode uses another one's estimate in the same window
             let found: Vec<Result<_, SceneError>> = modes.par_iter().enumerate().map(one).collect();
@@ -142,7 +142,7 @@ impl Experiment {
             if let Some(chosen) = chosen
                 && let Some(state) = &reached[chosen]
             {
-                for (name, value) in estimates[chosen].sought.iter().zip(state) {
+                for (name, value) in estimates[chosen].estimated.iter().zip(state) {
                     learned.insert(name.clone(), *value);
                 }
             }

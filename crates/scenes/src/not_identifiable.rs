@@ -3,7 +3,9 @@
 use palmistry_lang::{Kind, Role, SymbolInfo, System};
 use palmistry_math::expression::{NodeId, Symbol};
 use palmistry_math::number::{rational_from_f64, rational_to_f64};
-use palmistry_observe::{CalibrationKind, EstimateQuestion, Signals, Sought, declare, sought};
+use palmistry_observe::{
+    CalibrationKind, EstimateQuestion, EstimatedCalibration, Signals, declare, estimated_calibrations,
+};
 use palmistry_rank::observability::{Ceiling, Observability, generic_answer};
 use std::collections::HashMap;
 
@@ -32,7 +34,8 @@ pub(crate) fn not_identifiable(system: &System, wanted: &EstimateQuestion, signa
     }
     hold_constants(&mut system, &names, wanted, signals);
     let mut at = HashMap::new();
-    let late = sought(&system, &names).into_iter().filter_map(|own| Some((own.column, own.delay?)));
+    let late =
+        estimated_calibrations(&system, &names).into_iter().filter_map(|own| Some((own.column, own.delay?)));
     let late: Vec<(Symbol, Symbol)> = late.collect();
     if !late.is_empty() && delayed(&mut system, &late, wanted).is_none() {
         return Vec::new();
@@ -61,7 +64,7 @@ fn with_calibrations(
             system.fields[place].role = Role::Other;
         }
     }
-    for Sought { column, gain, bias, .. } in sought(system, names) {
+    for EstimatedCalibration { column, gain, bias, .. } in estimated_calibrations(system, names) {
         let name = system.symbol_name(column).to_owned();
         let [gain, bias] = [gain, bias].map(|symbol| symbol.map(|symbol| system.graph.symbol(symbol)));
         if let Some(place) = system.outputs.iter().position(|(output, _)| *output == name) {

@@ -184,7 +184,7 @@ impl Alone<'_> {
         interrupt: &AtomicBool,
     ) -> Result<Found, Option<Objection>> {
         let own = self.experiment.window_of(rows.start, rows.len() - 1).map_err(|_| None)?;
-        let start = own.told_by_palms(true).ok_or(None)?;
+        let start = own.determined_by_palms(true).ok_or(None)?;
         let mut task = own.task(interrupt).map_err(|_| None)?;
         let rank = self.rank.get_or_insert_with(|| MotionRank::new(&task, &start));
         // the bound of the window says how well it is observable

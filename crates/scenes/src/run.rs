@@ -190,7 +190,7 @@ impl Experiment {
             };
             estimate_question(&scene, &system, &truth, known, &signals, steady)?
         };
-        channels::are_told(&scene, &system, &question, &signals)?;
+        channels::are_determined(&scene, &system, &question, &signals)?;
         let motion = described.filter(|_| simulates);
         let closure = match (&scene.robot, &motion) {
             (Some(robot), Some(motion)) => Closure::of(robot, &motion.response.times),
@@ -396,7 +396,11 @@ pub(super) fn unusable(scene: &Scene, error: &RecordError) -> SceneError {
     let advice = error.help().map(|help| help.to_string()).unwrap_or_default();
     let help = match error {
         RecordError::Column { column, .. }
-            if !scene.observer.estimate.contains(column)
+            if column != palmistry_observe::TIME
+                && !advice.contains("perhaps")
+                && !advice.contains("separated by commas")
+                && !advice.contains("first line")
+                && !scene.observer.estimate.contains(column)
                 && !scene.columns.values().any(|own| own.from == *column) =>
         {
             format!("{advice}; or give '{column}' under `known`, or estimate it")

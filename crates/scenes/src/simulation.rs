@@ -21,7 +21,7 @@ pub const TOUCH: [&str; 2] = ["s1", "s2"];
 pub const NOMINAL: f64 = 1e-9;
 
 /// The number of samples of a motion of which only the start is needed.
-pub(super) const BEGINNING: usize = 2;
+pub(super) const FIRST_SAMPLES: usize = 2;
 
 /// A scene's body in motion.
 #[derive(Clone, Debug)]
@@ -51,8 +51,8 @@ impl Simulation {
     ///
     /// # Errors
     /// As [`Simulation::of`].
-    pub(super) fn beginning(scene: &Scene, simulated: &Simulated) -> Result<Simulation, SceneError> {
-        Simulation::of_samples(scene, simulated, BEGINNING)
+    pub(super) fn of_first_samples(scene: &Scene, simulated: &Simulated) -> Result<Simulation, SceneError> {
+        Simulation::of_samples(scene, simulated, FIRST_SAMPLES)
     }
 
     fn of_samples(scene: &Scene, simulated: &Simulated, most: usize) -> Result<Simulation, SceneError> {

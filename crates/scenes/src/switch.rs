@@ -39,7 +39,7 @@ impl Experiment {
                 let own = mode.window_of(first, window)?;
                 let reached: Option<Vec<f64>> =
                     own.names().iter().map(|name| learned.get(*name).copied()).collect();
-                let told = own.told_by_palms(self.scene.observer.guess == Guess::None);
+                let told = own.determined_by_palms(self.scene.observer.guess == Guess::None);
                 // the window's own estimate is nearer than any state of the sample box
                 let starts: Vec<Vec<f64>> = match told {
                     Some(told) => std::iter::once(told).chain(reached).collect(),
@@ -50,7 +50,7 @@ impl Experiment {
                 let foretold = rank.along(&task, &starts[0]);
                 let mut estimate = ModeEstimate {
                     name: name.clone(),
-                    sought: own.names().into_iter().map(str::to_owned).collect(),
+                    estimated: own.names().into_iter().map(str::to_owned).collect(),
                     update: None,
                     objection: foretold.objection(limit),
                     rank: Some(foretold),
@@ -67,7 +67,7 @@ impl Experiment {
                 let answers = estimate.objection.is_none() && estimate.fits();
                 if answers {
                     chosen = Some(place);
-                    learned = estimate.sought.iter().cloned().zip(came_to.unwrap_or_default()).collect();
+                    learned = estimate.estimated.iter().cloned().zip(came_to.unwrap_or_default()).collect();
                 }
                 estimates.push(estimate);
                 if answers || interrupt.load(Ordering::Relaxed) {
@@ -86,7 +86,7 @@ impl Experiment {
 
     /// The state at the first sample that the measurements between palms determine without a guess, in this observer's own terms; where that is `asked`, and
     /// all estimated states are among those determined.
-    pub(super) fn told_by_palms(&self, asked: bool) -> Option<Vec<f64>> {
+    pub(super) fn determined_by_palms(&self, asked: bool) -> Option<Vec<f64>> {
         if !asked {
             return None;
         }

@@ -3,11 +3,69 @@
 //! Observers that know the same equations are tested on it: their estimates are compared with the true state of the motion. It is no
 //! independent check of the equations, as a body between palms is.
 
+use super::groundwork::known_signals;
+use super::scene::hints;
 use super::scene::{Channel, Scene, SceneError, Sensor, SimulatedSystem};
-use super::simulation::{BEGINNING, read_with_errors};
-use palmistry_lang::System;
+use super::simulation::{FIRST_SAMPLES, read_with_errors};
+use palmistry_lang::{Kind, System};
 use palmistry_observe::{Lost, ModelError, Record, RecordError, Response, ResponseError, ResponseQuestion};
 use std::collections::BTreeMap;
+
+/// What `[inputs]` is for.
+const INPUTS: &str =
+    "[inputs] has a function of the time t for each known signal, or for a parameter that a signal drives";
+
+/// Why a system cannot move as a scene says, at its place in the scene.
+fn refused(scene: &Scene, system: &System, simulated: &SimulatedSystem, error: &ResponseError) -> SceneError {
+    let at = |place: &str, help: &str| scene.error_at(place, error.to_string(), "here", help);
+    let at_key = |place: [&str; 2], help: &str| scene.error_at_key(&place, error.to_string(), "here", help);
+    match error {
+        ResponseError::NoSymbol { name, .. } if simulated.start.contains_key(name) => {
+            let signals = known_signals(system);
+            let of = |kind: Kind| {
+                let all =
+                    system.symbols().filter(|(symbol, info)| info.kind == kind && !signals.contains(symbol));
+                all.map(|(symbol, _)| system.symbol_name(symbol)).take(20).collect::<Vec<_>>().join(", ")
+            };
+            let help = format!(
+                "[start] has a value for each state, and for constants; states: {}; parameters: {}",
+                of(Kind::State),
+                of(Kind::Parameter)
+            );
+            at_key(["start", name], &help)
+        }
+        ResponseError::NoSymbol { name, .. } | ResponseError::Moves { name } => {
+            at_key(["inputs", name], INPUTS)
+        }
+        ResponseError::Function { name, text, help, .. } => at(
+            &format!("inputs.{name}"),
+            &hints::of_function(text, help.as_deref()).unwrap_or_else(|| INPUTS.to_owned()),
+        ),
+        ResponseError::Model(
+            ModelError::NoField { .. } | ModelError::NoSymbol { .. } | ModelError::NotAnInput { .. },
+        ) => at("observer.inputs", "inputs = { field = \"symbol\" } says what drives a field"),
+        ResponseError::Model(ModelError::NotGiven { .. }) => at(
+            "start",
+            "give constants a value here, and what changes a function of the time t under [inputs]",
+        ),
+        ResponseError::NoStart { name } => {
+            let is_signal = system.known_signals().iter().any(|symbol| system.symbol_name(*symbol) == name);
+            if is_signal {
+                let place = if simulated.inputs.is_empty() { "start" } else { "inputs" };
+                let help = format!("add a function of the time t to [inputs], as in {name} = \"0.1*sin(t)\"");
+                return scene.error_at(place, format!("nothing says what drives '{name}'"), "here", help);
+            }
+            at(
+                "start",
+                &format!("add {name} = ... below [start]; a constant may have a value in the proof file too"),
+            )
+        }
+        ResponseError::Lost(_) => at("start", "each state begins at a value at which the equations exist"),
+        ResponseError::Model(_) | ResponseError::NoOutput => {
+            at("model", "what is simulated has a drift or inputs, and outputs")
+        }
+    }
+}
 
 /// A system's motion.
 #[derive(Clone, Debug)]
@@ -33,12 +91,12 @@ impl SystemMotion {
     ///
     /// # Errors
     /// As [`SystemMotion::of`].
-    pub(super) fn beginning(
+    pub(super) fn of_first_samples(
         scene: &Scene,
         system: &System,
         simulated: &SimulatedSystem,
     ) -> Result<SystemMotion, SceneError> {
-        SystemMotion::of_samples(scene, system, simulated, BEGINNING)
+        SystemMotion::of_samples(scene, system, simulated, FIRST_SAMPLES)
     }
 
     fn of_samples(
@@ -61,33 +119,8 @@ impl SystemMotion {
         };
         let mut times = simulated.times(scene.sensor.jitter, scene.seed);
         times.truncate(most);
-        let response = palmistry_observe::response(system, &question, &times).map_err(|error| {
-            let (place, help) = match &error {
-                ResponseError::NoSymbol { name, .. } if simulated.start.contains_key(name) => {
-                    (format!("start.{name}"), "[start] has a value for each state, and for constants")
-                }
-                ResponseError::NoSymbol { name, .. }
-                | ResponseError::Moves { name }
-                | ResponseError::Function { name, .. } => (
-                    format!("inputs.{name}"),
-                    "[inputs] has a function of the time t for each known signal, or for a parameter that a signal drives",
-                ),
-                ResponseError::Model(
-                    ModelError::NoField { .. } | ModelError::NoSymbol { .. } | ModelError::NotAnInput { .. },
-                ) => ("observer.inputs".to_owned(), "inputs = { field = \"symbol\" } says what drives a field"),
-                ResponseError::Model(ModelError::NotGiven { .. }) => (
-                    "start".to_owned(),
-                    "give constants a value here, and what changes a function of the time t under [inputs]",
-                ),
-                ResponseError::NoStart { .. } | ResponseError::Lost(_) => {
-                    ("start".to_owned(), "each state begins at a value at which the equations exist")
-                }
-                ResponseError::Model(_) | ResponseError::NoOutput => {
-                    ("model".to_owned(), "what is simulated has a drift or inputs, and outputs")
-                }
-            };
-            scene.error_at(&place, error.to_string(), "here", help)
-        })?;
+        let response = palmistry_observe::response(system, &question, &times)
+            .map_err(|error| refused(scene, system, simulated, &error))?;
         Ok(SystemMotion { response })
     }
 

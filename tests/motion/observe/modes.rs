@@ -41,7 +41,7 @@ fn each_window_has_its_mode_and_one_across_has_none() {
     assert_eq!(chosen, [Some(0), Some(0), None, Some(1), Some(1)]);
     for window in &windows[3..] {
         let update = window.estimates[1].update.as_ref().unwrap();
-        assert_eq!(window.estimates[1].sought, ["x", "v", "g"]);
+        assert_eq!(window.estimates[1].estimated, ["x", "v", "g"]);
         assert!((update.estimate[2] - 9.81).abs() < 1e-6, "{:?}", update.estimate);
         assert!((update.estimate[1] - 0.5 + 9.81 * (window.from - 2.5)).abs() < 1e-6);
     }
@@ -129,7 +129,8 @@ fn friction_is_found_between_changes_of_modes() {
         };
         assert_eq!(estimate.name, name, "{window:?}");
         let update = estimate.update.as_ref().unwrap();
-        let found = |name: &str| update.estimate[estimate.sought.iter().position(|own| own == name).unwrap()];
+        let found =
+            |name: &str| update.estimate[estimate.estimated.iter().position(|own| own == name).unwrap()];
         println!("{} {} mu {} 1/m {}", window.from, name, found("mu"), found("one_over_m"));
         assert!((found("mu") - sign * 0.135).abs() < 1e-5, "{}", found("mu"));
         assert!((found("one_over_m") - 1.0).abs() < 1e-5);

@@ -1,6 +1,6 @@
 //! Why a record cannot be read or written.
 
-use super::{Fault, MOST_FAULTS};
+use super::{Fault, FaultKind, MOST_FAULTS};
 use miette::Diagnostic;
 use palmistry_io::foreign::{shown, shown_path};
 use std::path::PathBuf;
@@ -128,7 +128,16 @@ pub enum RecordError {
 }
 
 fn what_to_do(faults: &[Fault]) -> &'static str {
+    let surplus = faults.iter().filter(|fault| matches!(fault.kind, FaultKind::Surplus { .. })).count();
+    let disorder = faults.iter().filter(|fault| matches!(fault.kind, FaultKind::OutOfOrder)).count();
     match faults.len() > MOST_FAULTS {
+        // of most rows it is no slip
+        _ if surplus > 1 && 3 * surplus > faults.len() => {
+            "a decimal point is written '.', as in 0.5: commas separate columns; or the header names too few columns"
+        }
+        _ if disorder > 1 && 2 * disorder > faults.len() => {
+            "times increase from row to row: sort the rows by time, or see whether this is the column of times"
+        }
         true => "mend the file: of so many faults not all are known, so that no row is skipped",
         false => "mend the rows, or let faulty rows be skipped (on_fault = \"skip\" in the scene)",
     }

@@ -209,7 +209,23 @@ pub(super) fn judged(path: &Path, plan: &ColumnPlan, needed: &[&str]) -> Result<
 }
 
 fn missing(path: &Path, names: &[String], column: &str) -> RecordError {
-    let help = match nearest(column, names.iter().map(String::as_str)) {
+    // a name with its unit beside it, as in "h2 (m)" or "time [s]"
+    let with_unit = |name: &&str| {
+        let rest = name.strip_prefix(column).map(str::trim_start);
+        rest.is_some_and(|rest| rest.starts_with(['(', '[', '/', ',']))
+    };
+    let all = || names.iter().map(String::as_str);
+    let short_time = |name: &&str| {
+        column == TIME && ["t", "timestamp", "seconds"].iter().any(|own| name.eq_ignore_ascii_case(own))
+    };
+    let same = all().find(with_unit).or_else(|| all().find(short_time));
+    let help = match same.or_else(|| nearest(column, all())) {
+        _ if names.iter().all(|name| name.parse::<f64>().is_ok()) => {
+            format!(
+                "the first line is one of numbers: let it name the columns, as in {TIME},{}",
+                if column == TIME { "x" } else { column }
+            )
+        }
         Some(name) => {
             format!(
                 "perhaps '{name}' is meant; the header must name it '{column}', or a scene so: [columns] {column} = \"{name}\"",
@@ -217,7 +233,12 @@ fn missing(path: &Path, names: &[String], column: &str) -> RecordError {
             )
         }
         None if names.len() == 1 => {
-            format!("its header is the one name {:?}; columns are separated by commas", names[0])
+            let sign = match names[0].chars().find(|sign| matches!(sign, ';' | '\t')) {
+                Some(';') => ", here by semicolons",
+                Some(_) => ", here by tabs",
+                None => "",
+            };
+            format!("its header is the one name {:?}; columns are separated by commas{sign}", names[0])
         }
         None => format!("its columns are {}", listed(names)),
     };

@@ -2,7 +2,7 @@
 //! numbers with both values.
 
 use crate::claims::outcomes::{error_bound, explanations, special_text, with_decimal};
-use crate::claims::words::{meaning, numbered, words_markdown};
+use crate::claims::verdicts::{meaning, numbered, verdicts_markdown};
 use crate::formula::statement_latex_in;
 use palmistry_io::foreign::{code_block, code_span, markdown};
 use palmistry_lang::{Basis, Flaw};
@@ -19,7 +19,7 @@ pub fn errata_markdown<'o>(paper: &Paper, outcomes: impl IntoIterator<Item = &'o
          at a state in exact numbers, at which its two sides differ, wherever it can be stated; the corrected form is proved.\n\n",
         reference(paper),
     );
-    words_markdown(&paper.numbering, &outcomes, &mut out);
+    verdicts_markdown(&paper.numbering, &outcomes, &mut out);
     for fault in Flaw::ALL {
         let of_kind = outcomes.iter().copied().filter(|outcome| outcome.fault == Some(fault) && outcome.ok);
         let of_kind = paper.numbering.in_order(of_kind);

@@ -4,10 +4,10 @@ pub(super) mod errata;
 mod junit;
 pub(super) mod outcomes;
 pub(super) mod text;
-pub(super) mod words;
+pub(super) mod verdicts;
 
 pub use errata::errata_markdown;
 pub use junit::junit;
 pub use outcomes::{claim_json, claim_line};
 pub use text::{ClaimsForm, ClaimsSummary, Shown, claim_text, claims_text};
-pub use words::counts_text;
+pub use verdicts::counts_text;

@@ -3,7 +3,7 @@
 use crate::claims::outcomes::{
     claim_line, error_bound, not_looked_at_text, special_text, state_line, with_decimal,
 };
-use crate::claims::words::counts_text;
+use crate::claims::verdicts::counts_text;
 use crate::formula::statement_latex_in;
 use crate::layout::{Layout, Tone, counted};
 use palmistry_io::foreign;

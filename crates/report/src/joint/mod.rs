@@ -6,7 +6,7 @@ mod tables;
 
 pub use page::joint_page;
 pub(crate) use page::joint_section;
-use palmistry_fit::{ParameterProfile, ParameterScale, SimulatedExperiments, SoughtParameter, StartEnd};
+use palmistry_fit::{EstimatedParameter, ParameterProfile, ParameterScale, SimulatedExperiments, StartEnd};
 use palmistry_scenes::joint::{JointAnswer, JointExperiments};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -62,7 +62,12 @@ impl Standing {
         }
     }
 
-    fn of(parameter: &SoughtParameter, scaled: f64, deviation: Option<f64>, is_at_bound: bool) -> Standing {
+    fn of(
+        parameter: &EstimatedParameter,
+        scaled: f64,
+        deviation: Option<f64>,
+        is_at_bound: bool,
+    ) -> Standing {
         let Some(deviation) = deviation.filter(|_| !is_at_bound) else { return Standing::AtBound };
         let [low, high] = parameter.scaled_bounds();
         let half = HALF * deviation;
@@ -81,7 +86,7 @@ impl Standing {
 
 /// The best value of a parameter.
 struct Entry<'a> {
-    parameter: &'a SoughtParameter,
+    parameter: &'a EstimatedParameter,
     scaled: f64,
     /// On its scale.
     deviation: Option<f64>,
@@ -114,7 +119,7 @@ impl Entry<'_> {
 fn entries<'a>(observed: &JointObserved<'a>) -> Vec<Entry<'a>> {
     let Some(Ok(fit)) = &observed.answer.fit else { return Vec::new() };
     let has_ended = fit.best().end == StartEnd::Converged;
-    let entry = |(place, parameter): (usize, &'a SoughtParameter)| {
+    let entry = |(place, parameter): (usize, &'a EstimatedParameter)| {
         let deviation =
             observed.answer.information.as_ref().and_then(|own| own.deviations.get(place).copied().flatten());
         let is_at_bound = observed.answer.at_bounds.get(place) == Some(&true);

@@ -35,11 +35,11 @@ fn estimate_json(estimate: &ModeEstimate) -> Value {
 
 fn update_json(estimate: &ModeEstimate) -> Value {
     let Some(update) = &estimate.update else { return json!({ "name": estimate.name, "fits": false }) };
-    let states: Map<String, Value> = (0..estimate.sought.len())
+    let states: Map<String, Value> = (0..estimate.estimated.len())
         .map(|i| {
             let state =
                 json!({ "recovered": finite(update.estimate[i]), "bound": finite(update.deviations[i]) });
-            (estimate.sought[i].clone(), state)
+            (estimate.estimated[i].clone(), state)
         })
         .collect();
     json!({
@@ -100,7 +100,7 @@ pub fn modes_text(experiment: &Experiment, windows: &[ModeWindow]) -> String {
         let _ = writeln!(text, "{}{also}, residual {rms_residual:.1e}{}", estimate.name, truth(window));
         window.estimates.iter().for_each(|estimate| rank_line(&mut text, estimate));
         if let Some(update) = &estimate.update {
-            state_lines(&mut text, experiment, &estimate.sought, update);
+            state_lines(&mut text, experiment, &estimate.estimated, update);
         }
     }
     match experiment.samples_after_windows() {

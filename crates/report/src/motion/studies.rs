@@ -53,7 +53,7 @@ fn curvature_json(map: &CurvatureMap) -> Value {
     let motions = map.motions.iter().map(|motion| {
         json!({ "orientation": motion.orientation, "rate": motion.rate, "flat": bound_json(motion.flat) })
     });
-    let pairs = map.told.iter().enumerate().map(|(cell, told)| {
+    let pairs = map.bounds.iter().enumerate().map(|(cell, told)| {
         let ratio = map.ratio(cell).map(|ratio| {
             json!({
                 "median": of_ratio(ratio.median),
@@ -115,13 +115,13 @@ fn curvature_text(map: &CurvatureMap, text: &mut String) {
     let _ = writeln!(text, "  1/b2, 1/m  1/b1 ={head}");
     for (row, curvature) in map.curvatures.iter().enumerate().rev() {
         let cells: String =
-            (0..side).map(|column| format!("{:>9}", ratio_words(map, row * side + column))).collect();
+            (0..side).map(|column| format!("{:>9}", ratio_text(map, row * side + column))).collect();
         let _ = writeln!(text, "  {curvature:>9.3}        {cells}");
     }
 }
 
 /// The median of a pair of curvatures as text.
-pub(super) fn ratio_words(map: &CurvatureMap, cell: usize) -> String {
+pub(super) fn ratio_text(map: &CurvatureMap, cell: usize) -> String {
     match map.ratio(cell) {
         Some(ratio) if ratio.median.is_finite() => format!("{:.2}", ratio.median),
         Some(_) => "not observable".to_owned(),

@@ -5,7 +5,7 @@ use crate::axis::number;
 use crate::drawing::{Canvas, INK, MESH, escaped, svg};
 use crate::motion::answers::{Observed, noise_unit};
 use crate::motion::plot::with_unit;
-use crate::motion::studies::ratio_words;
+use crate::motion::studies::ratio_text;
 use palmistry_scenes::{Basin, CurvatureMap};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -185,14 +185,14 @@ pub(super) fn curvature(map: &CurvatureMap) -> String {
         // on the pale fields in a dark page, too, where ink is light
         let dark = ("sans-serif", 12).into_font().color(&RGBColor(30, 32, 38));
         let middle = dark.pos(Pos::new(HPos::Center, VPos::Center));
-        for cell in 0..map.told.len() {
+        for cell in 0..map.bounds.len() {
             let (i, j) = (cell % side, cell / side);
             if let Some(colour) = colour(cell) {
                 chart.draw_series([Rectangle::new([corner(i, j), corner(i + 1, j + 1)], colour.filled())])?;
             }
             if side <= MOST_WORDS {
                 let at = (map.curvatures[i], map.curvatures[j]);
-                chart.draw_series([Text::new(ratio_words(map, cell), at, middle.clone())])?;
+                chart.draw_series([Text::new(ratio_text(map, cell), at, middle.clone())])?;
             }
         }
         chart

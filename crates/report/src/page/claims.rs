@@ -2,7 +2,7 @@
 
 use super::anchors::{Anchors, Placed};
 use super::entry::{Engines, entry};
-use crate::claims::words::{RULE_OF_DAMAGE, counts, errors, meaning};
+use crate::claims::verdicts::{RULE_OF_DAMAGE, counts, errors, meaning};
 use maud::{Markup, html};
 use palmistry_lang::Flaw;
 use palmistry_prove::claim::Outcome;

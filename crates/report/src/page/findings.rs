@@ -2,7 +2,7 @@
 
 use crate::certificate::answer::region_json;
 use crate::claims::outcomes::{claim_json, claim_line};
-use crate::claims::words::{counts, counts_text, errors};
+use crate::claims::verdicts::{counts, counts_text, errors};
 use crate::joint::{JointObserved, joint_json};
 use crate::layout::counted;
 use crate::motion::answers::{Observed, observe_json};
@@ -17,7 +17,7 @@ use palmistry_io::foreign::shown;
 use palmistry_lang::Flaw;
 use palmistry_rank::sweep::RankAnswer;
 use palmistry_scenes::Answer;
-use palmistry_workbench::paper::{FileFindings, Findings, LineFound, ReductionFound, SetRank};
+use palmistry_workbench::paper::{FileFindings, Findings, LeftOut, LineFound, ReductionFound, SetRank};
 use palmistry_workbench::tradeoff::stress::StressStudy;
 use palmistry_workbench::tradeoff::{LandscapeRows, Map, PrintedExpression, PrintedValue};
 use serde_json::{Value, json};
@@ -139,8 +139,13 @@ fn file_json(file: &FileFindings) -> Value {
         "trade": file.trade.as_ref().map(trade_json),
         "where_it_drops": file.drops.as_ref().map(drops_json),
         "certificate": file.certificate.as_ref().map(region_json),
-        "left_out": file.left_out.iter().map(|left| json!({ "what": left.what, "why": left.why })).collect::<Vec<_>>(),
+        "left_out": left_json(&file.left_out),
+        "too_large": left_json(&file.too_large),
     })
+}
+
+fn left_json(left: &[LeftOut]) -> Value {
+    left.iter().map(|left| json!({ "what": left.what, "why": left.why })).collect()
 }
 
 fn printed_json(found: &PrintedExpression) -> Value {
@@ -363,6 +368,9 @@ fn file_text(file: &FileFindings, out: &mut String) {
     }
     for left in &file.left_out {
         let _ = writeln!(out, "  not done: {}: {}", left.what, left.why);
+    }
+    for left in &file.too_large {
+        let _ = writeln!(out, "  bounded: {}: {}", left.what, left.why);
     }
 }
 

@@ -40,6 +40,7 @@ pub(super) fn file_section(anchor: &str, file: &FileFindings, claims: &Markup, u
             @if !file.ranks.is_empty() { div.beside { div { (system_mathematics(&file.system)) } (structure(file)) } }
             @for found in &file.reductions { (reduction(found, looks)) }
             @for left in &file.left_out { p.bad { "Not done: " (left.what) ": " (left.why) } }
+            @for left in &file.too_large { p { "Bounded: " (left.what) ": " (left.why) "." } }
             (claims)
             @if !file.ranks.is_empty() {
                 h3 { "What is observable" }

@@ -1,8 +1,8 @@
 //! Answers about accessibility, as JSON and as text.
 
 use super::answer::{stop_text, sweep_json};
+use super::deviations::{part_text, place_text};
 use super::generic::finite;
-use super::seen::{part_text, place_text};
 use crate::names::{fields_json, fields_text, values_json, values_text};
 use palmistry_rank::observability::RankBounds;
 use palmistry_rank::sweep::{AccessibilityAnswer, AccessibilityBranch, SweepReport, UnobservableDirection};

@@ -1,8 +1,8 @@
 //! Answers about ranks, as JSON and as text.
 
+use super::deviations::{deviations_json, deviations_text, direction_text, place_text};
 use super::generic::{add_generic_json, finite, generic_text};
 use super::motions::{motions_json, motions_text};
-use super::seen::{deviations_json, deviations_text, direction_text, place_text};
 use crate::layout::{counted, item, prose};
 use crate::names::{by_default_text, fields_json, fields_text, ranges_json, values_json, values_text};
 use palmistry_lang::Range;
@@ -22,7 +22,7 @@ fn histogram_json(histogram: &BTreeMap<usize, u64>) -> Value {
 }
 
 /// How many states each number type decided.
-fn rungs_json(report: &SweepReport) -> Value {
+fn number_types_json(report: &SweepReport) -> Value {
     let counts = report.number_types.iter().map(|(number_type, count)| (number_type.name(), json!(count)));
     counts.collect::<serde_json::Map<_, _>>().into()
 }
@@ -78,7 +78,7 @@ pub(super) fn sweep_json(report: &SweepReport) -> Value {
         "samples": report.samples,
         "rank_histogram": histogram_json(&report.rank_histogram),
         "certified": report.certified,
-        "decided_by": rungs_json(report),
+        "decided_by": number_types_json(report),
         "escalated": report.climbed(),
         "singular_values_of": [report.remaining.0, report.remaining.1],
         "computed_rank_histogram": histogram_json(&report.computed_histogram),

@@ -2,7 +2,8 @@
 
 use super::keys::{Formula, JointScene};
 use super::rows::{MeasuredRow, MeasuredRows};
-use palmistry_fit::{JointExperiment, JointMeasurement, JointProblem, Phase, SoughtParameter};
+use super::unused::refuse_unused;
+use palmistry_fit::{EstimatedParameter, JointExperiment, JointMeasurement, JointProblem, Phase};
 use palmistry_lang::{Kind, ReadError, SymbolInfo, System, nearest};
 use palmistry_math::expression::{NodeId, Symbol};
 use palmistry_math::number::rational_from_f64;
@@ -17,8 +18,9 @@ impl JointScene {
     /// # Errors
     /// What is wrong with the model, the scene or the measurements, and where.
     pub fn problem(&self, data: Option<&Path>) -> Result<JointProblem, ReadError> {
-        let system = System::read(&self.model)?;
+        let mut system = System::read(&self.model)?;
         let rows = MeasuredRows::read(data.unwrap_or(&self.measurements))?;
+        refuse_unused(self, &mut system, &rows, data.is_none())?;
         Building::new(self, system)?.problem(rows)
     }
 }
@@ -27,7 +29,7 @@ struct Building<'s> {
     scene: &'s JointScene,
     system: System,
     /// The estimated parameters.
-    parameters: Vec<SoughtParameter>,
+    parameters: Vec<EstimatedParameter>,
     /// Parameters whose values are known, by the scene or by the file.
     known: Values,
     rates: Vec<NodeId>,
@@ -49,7 +51,7 @@ impl<'s> Building<'s> {
             let place = format!("parameters.{}", own.name);
             let symbol = declared(scene, &mut system, &own.name, &place)?;
             sought.insert(symbol);
-            parameters.push(SoughtParameter {
+            parameters.push(EstimatedParameter {
                 name: own.name.clone(),
                 symbol,
                 scale: own.scale,
@@ -290,7 +292,11 @@ impl<'s> Building<'s> {
                     "the scene says nothing of the errors of '{}'",
                     palmistry_io::foreign::shown(&row.output)
                 );
-                return Err(rows.error(row, message, "add it to [errors], for instance: y = { size = 0.1 }"));
+                let help = match nearest(&row.output, scene.errors.keys().map(String::as_str)) {
+                    Some(near) => format!("perhaps you meant '{near}'; or add it to [errors]"),
+                    None => "add it to [errors], for instance: y = { size = 0.1 }".to_owned(),
+                };
+                return Err(rows.error(row, message, help));
             };
             if error.scale() != palmistry_fit::ErrorScale::Linear && row.value <= 0.0 {
                 return Err(rows.error(

@@ -1,8 +1,9 @@
 //! The scene as it is written, and whether its values can be used.
 
+use super::super::scene::hints;
 use super::super::scene::place::Places;
 use palmistry_fit::{ErrorLaw, ErrorScale, ParameterScale, Prior, PriorLaw};
-use palmistry_io::foreign::{name_of, shown_path};
+use palmistry_io::foreign::name_of;
 use palmistry_lang::{Code, Problem, ReadError, load};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -200,13 +201,9 @@ impl JointScene {
         }
         Some(JointScene::parse(&name_of(path), &text).and_then(|scene| {
             for (place, file) in [("model", &scene.model), ("measurements", &scene.measurements)] {
-                if !palmistry_io::file::is_file(file) {
-                    let message = format!("there is no file {}", shown_path(file));
-                    return Err(scene.error_at(
-                        place,
-                        message,
-                        "a file is looked for from the folder in which the scene lies",
-                    ));
+                let what = if place == "model" { hints::PROOF_FILE } else { "a table of measurements" };
+                if let Some((message, help)) = hints::refused_file(file, what) {
+                    return Err(scene.error_at(place, message, help));
                 }
             }
             Ok(scene)
@@ -229,6 +226,17 @@ impl JointScene {
     /// A mistake at a place of the scene, named by its keys.
     pub fn error_at(&self, place: &str, message: impl Into<String>, help: impl Into<String>) -> ReadError {
         let span = Places::of(&self.text).map_or(0..0, |places| places.value(place));
+        Problem::new(Code::SceneValue, &span, message, "this").help(help).locate(&self.name, &self.text)
+    }
+
+    /// A mistake in a key of the scene, named by the tables in which it stands and itself.
+    pub(super) fn error_at_key(
+        &self,
+        place: &[&str],
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> ReadError {
+        let span = Places::of(&self.text).map_or(0..0, |places| places.key_of(place));
         Problem::new(Code::SceneValue, &span, message, "this").help(help).locate(&self.name, &self.text)
     }
 }
@@ -272,6 +280,14 @@ fn checked(keys: Keys, places: &Places<'_>, name: &str, text: &str) -> Result<Jo
             format!("at most {MOST_STARTS} starts and {MOST_STEPS} steps are made"),
             "ask for fewer",
         );
+    }
+    for (name, own) in &keys.errors {
+        if let Formula::Number(size) = own.size
+            && !(size > 0.0 && size.is_finite())
+        {
+            let message = format!("the size of errors has to be positive, and is {size}");
+            return wrong(&format!("errors.{name}.size"), message, "give one standard deviation, above zero");
+        }
     }
     let mut parameters = Vec::new();
     for (name, own) in keys.parameters {

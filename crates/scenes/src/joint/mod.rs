@@ -7,6 +7,7 @@ mod built;
 mod keys;
 mod rows;
 mod run;
+mod unused;
 
 pub use keys::JointScene;
 pub use run::{GoodnessOfFit, JointAnswer, JointExperiments, NominalAnswer};

@@ -8,6 +8,13 @@ use std::path::Path;
 /// The most measurements.
 const MOST_ROWS: usize = 1_000_000;
 
+/// The columns that a file of measurements has.
+const COLUMNS: [&str; 4] = ["experiment", "output", "time", "value"];
+
+/// Of a row with more cells than the header has names.
+const MORE_CELLS: &str =
+    "a decimal point is written '.', as in 0.5: commas separate columns; or take the cells too many out";
+
 /// A row.
 pub(super) struct MeasuredRow {
     pub experiment: String,
@@ -26,6 +33,19 @@ pub(super) struct MeasuredRows {
     pub rows: Vec<MeasuredRow>,
     name: String,
     text: String,
+}
+
+/// What to do where a column is missing.
+fn no_column(head: &csv::StringRecord, wanted: &str) -> String {
+    if let Some(only) = head.get(0).filter(|only| head.len() == 1 && only.contains([';', '\t'])) {
+        let sign = if only.contains(';') { "semicolons" } else { "tabs" };
+        return format!("columns are separated by commas, here by {sign}");
+    }
+    let here = head.iter().map(shown).collect::<Vec<_>>().join(", ");
+    format!(
+        "the header names the columns {}; here: {here}; rename the one that is '{wanted}'",
+        COLUMNS.join(", ")
+    )
 }
 
 impl MeasuredRows {
@@ -54,13 +74,13 @@ impl MeasuredRows {
         let find = |wanted: &str| head.iter().position(|own| own == wanted);
         let first = 0..text.lines().next().map_or(0, str::len);
         let mut places = [0; 4];
-        for (place, wanted) in places.iter_mut().zip(["experiment", "output", "time", "value"]) {
-            *place = find(wanted)
-                .ok_or_else(|| at(first.clone(), format!("the file has no column '{wanted}'"), no_table))?;
+        for (place, wanted) in places.iter_mut().zip(COLUMNS) {
+            *place = find(wanted).ok_or_else(|| {
+                let message = format!("the file has no column '{wanted}'");
+                at(first.clone(), message, &no_column(&head, wanted))
+            })?;
         }
-        if let Some(other) =
-            head.iter().find(|own| !["experiment", "output", "time", "value", "set"].contains(own))
-        {
+        if let Some(other) = head.iter().find(|own| *own != "set" && !COLUMNS.contains(own)) {
             return Err(at(first, format!("'{}' is no column that is known here", shown(other)), no_table));
         }
         let set = find("set");
@@ -70,6 +90,10 @@ impl MeasuredRows {
                 record.map_err(|why| at(0..0, format!("the file cannot be read: {why}"), no_table))?;
             let start = record.position().map_or(0, |place| place.byte() as usize).min(text.len());
             let place = start..text[start..].find('\n').map_or(text.len(), |length| start + length);
+            if record.len() > head.len() {
+                let message = format!("the row has {} cells, and the header {}", record.len(), head.len());
+                return Err(at(place, message, MORE_CELLS));
+            }
             let cell = |column: usize| record.get(column).filter(|cell| !cell.is_empty());
             let needed = |column: usize| {
                 cell(column).ok_or_else(|| {
@@ -84,7 +108,8 @@ impl MeasuredRows {
                 let text = needed(column)?;
                 let value = text.parse::<f64>().ok().filter(|value| !value.is_nan());
                 value.ok_or_else(|| {
-                    at(place.clone(), format!("'{}' is no number", shown(text)), "write a decimal")
+                    let help = "write a decimal with a point, as in 0.5, or take the row out";
+                    at(place.clone(), format!("'{}' is no number", shown(text)), help)
                 })
             };
             let (time, value) = (number(places[2])?, number(places[3])?);
@@ -150,6 +175,24 @@ mod tests {
         ] {
             let Err(why) = MeasuredRows::parse("m.csv", text.to_owned()) else { panic!("{text}") };
             assert_eq!(why.message, message);
+        }
+        for (text, message, help) in [
+            (
+                "experiment,output,time,value\na,y,0,0,691\n",
+                "the row has 5 cells, and the header 4",
+                "written '.'",
+            ),
+            (
+                "experiment;output;time;value\na;y;0;1\n",
+                "the file has no column 'experiment'",
+                "here by semicolons",
+            ),
+            ("experiment,output,t,value\na,y,0,1\n", "the file has no column 'time'", "output, t, value"),
+            ("experiment,output,time,value\na,y,0,n/a\n", "'n/a' is no number", "take the row out"),
+        ] {
+            let Err(why) = MeasuredRows::parse("m.csv", text.to_owned()) else { panic!("{text}") };
+            assert_eq!(why.message, message);
+            assert!(why.help.as_deref().unwrap_or_default().contains(help), "{text}: {:?}", why.help);
         }
     }
 }

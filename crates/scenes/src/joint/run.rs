@@ -171,7 +171,7 @@ impl JointExperiments {
     }
 
     fn at_bounds(&self, found: &[f64]) -> Vec<bool> {
-        let is_at = |(one, place): (&palmistry_fit::SoughtParameter, &f64)| {
+        let is_at = |(one, place): (&palmistry_fit::EstimatedParameter, &f64)| {
             let [low, high] = one.scaled_bounds();
             (place - low).min(high - place) <= AT_BOUND * (high - low)
         };

@@ -107,6 +107,20 @@ fn mistakes_are_named_where_they_are() {
         ("title", "titel", "unknown key 'titel'"),
         ("m.csv", "n.csv", "there is no file"),
         ("law = \"log-normal\"", "law = \"cauchy\"", "'cauchy' is not known"),
+        ("s = 3", "s = 3\nqq = 1", "'qq' is no parameter of the model, and stands in no formula"),
+        (
+            "k = { b",
+            "kk = { b",
+            "'kk' is no parameter of the model, and stands in no formula perhaps you meant 'k'",
+        ),
+        ("both = {", "bot = {", "'bot' is no output of the model perhaps you meant 'both'"),
+        ("both = {", "z = { size = 1 }\nboth = {", "'z' is no output of the model there are both"),
+        ("\"e*q\"", "-1", "the size of errors has to be positive, and is -1"),
+        (
+            "[experiments.two]",
+            "[experiments.three]\n[experiments.two]",
+            "nothing was measured in the experiment 'three'",
+        ),
     ] {
         assert!(SCENE.contains(from), "{from}");
         let why =
@@ -120,6 +134,7 @@ fn mistakes_are_named_where_they_are() {
         ("q = 2", "q = (", "expected"),
         ("4,q", "-4,q", "-4 has no logarithm, and 'both' is compared by it"),
         ("one,both,2", "one,bot,2", "the scene says nothing of the errors of 'bot'"),
+        ("one,both,2,4", "one,both,2,0,4", "the row has 6 cells, and the header 5"),
         ("q = 2", "", "nothing says what 'q' is"),
     ] {
         let why =
@@ -132,8 +147,9 @@ fn mistakes_are_named_where_they_are() {
 
 /// Of two factors only the product is identifiable: the chi-square test counts identifiable directions, and each factor is non-identifiable.
 #[test]
-fn what_is_not_told_explains_nothing() {
+fn what_is_not_identifiable_explains_nothing() {
     let scene = SCENE
+        .replace("[experiments.two]\nset = { k = \"2*k\", x = 4, s = \"r/2\" }\n", "")
         .replace("x = \"2*a\"", "x = \"a*b\"")
         .replace("{ size = \"e*q\", on = \"log10\" }", "{ size = 0.1 }")
         .replace(

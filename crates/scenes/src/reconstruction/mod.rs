@@ -33,7 +33,7 @@ use palmistry_bodies::shape::{
 };
 use record::WholeRecord;
 use std::sync::atomic::AtomicBool;
-use whole::Told;
+use whole::WholeEstimate;
 
 /// The batch estimate is accepted if its residual is below this fraction of the mean radius, or a few times the noise: else the model is wrong.
 const BELIEVED: f64 = 1e-3;
@@ -118,7 +118,7 @@ impl Experiment {
         &self,
         track: &TouchTrack,
         interrupt: &AtomicBool,
-    ) -> Result<(WholeRecord, Told), Option<Apart>> {
+    ) -> Result<(WholeRecord, WholeEstimate), Option<Apart>> {
         if track.forms.iter().any(|form| *form != Palm::Flat) {
             return Err(None);
         }
@@ -131,7 +131,7 @@ impl Experiment {
         {
             return Err(Some(record.apart(first)));
         }
-        let Some(told) = record.tell(&starts, stated, interrupt) else { return Err(None) };
+        let Some(told) = record.estimate(&starts, stated, interrupt) else { return Err(None) };
         let mean = told.best.shape.support.mean();
         let most = (BELIEVED * mean).max(BELIEVED_NOISE * stated);
         if told.best.rms_residual <= most && mean > 0.0 { Ok((record, told)) } else { Err(None) }
@@ -184,7 +184,7 @@ fn from_track(track: &TouchTrack, by_windows: bool) -> (Option<ShapeEstimate>, C
 type Value<'a> = (f64, &'a [f64]);
 
 /// The best candidate's motion, with the deviations of all candidates about it.
-fn whole_motion(record: &WholeRecord, told: &Told) -> WholeMotion {
+fn whole_motion(record: &WholeRecord, told: &WholeEstimate) -> WholeMotion {
     let own = |found: &Found, (value, row): Value<'_>| Measured {
         value,
         deviation: deviation_of(&found.covariance, row),

@@ -65,7 +65,7 @@ pub(super) fn no_outline(
 }
 
 /// The value of a state or constant at a sample, from the measurements or from the known values.
-pub(super) fn told(experiment: &Experiment, name: &str, row: usize) -> Option<f64> {
+pub(super) fn measured_or_known(experiment: &Experiment, name: &str, row: usize) -> Option<f64> {
     let signals = &experiment.signals;
     if let Some(place) = signals.find(name) {
         return signals.column(place).get(row).copied();
@@ -99,7 +99,7 @@ pub(super) fn touch_track(experiment: &Experiment, answer: &Answer) -> Option<To
         let row = times.partition_point(|time| *time < moment.time);
         let of = |name: &str| match place(name) {
             Some(place) => Some(moment.state[place]),
-            None => told(experiment, name, row),
+            None => measured_or_known(experiment, name, row),
         };
         let (r, s) = ([moment.state[first], moment.state[second]], [of("s1")?, of("s2")?]);
         let (phi1, phi2) = (of("phi1")?, of("phi2")?);
@@ -166,7 +166,7 @@ fn orientations(experiment: &Experiment, answer: &Answer) -> Option<Vec<f64>> {
     let track = &answer.track;
     let rate = |time: f64, state: &[f64]| match place {
         Some(place) => Some(state[place]),
-        None => told(experiment, "omega0", times.partition_point(|other| *other < time)),
+        None => measured_or_known(experiment, "omega0", times.partition_point(|other| *other < time)),
     };
     let start = experiment.simulation.as_ref().and_then(|s| s.trajectory.moments.first());
     let mut orientation = start.map_or(0.0, |moment| moment.phi0);
@@ -241,7 +241,7 @@ pub(super) fn forms(experiment: &Experiment) -> [Palm<f64>; 2] {
     if experiment.simulation.is_some() {
         return experiment.scene.palm_forms;
     }
-    ["b1", "b2"].map(|name| match told(experiment, name, 0) {
+    ["b1", "b2"].map(|name| match measured_or_known(experiment, name, 0) {
         Some(radius) if radius.is_finite() && radius != 0.0 => Palm::Circular { radius },
         _ => Palm::Flat,
     })

@@ -14,7 +14,7 @@ use palmistry_bodies::shape::deviation_of;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The estimate from a whole record: the likeliest candidate, and the others with their probabilities.
-pub(super) struct Told {
+pub(super) struct WholeEstimate {
     pub best: Found,
     pub others: Vec<(f64, Found)>,
 }
@@ -54,7 +54,12 @@ const UNLIKELY: f64 = 1e-4;
 
 impl WholeRecord {
     /// Shape and motion, from given initial values; none where nothing can be followed, or it was interrupted. Where no deviation of a contact is stated it is taken from the residual of the best candidate.
-    pub fn tell(&mut self, starts: &[Unknowns], stated: f64, interrupt: &AtomicBool) -> Option<Told> {
+    pub fn estimate(
+        &mut self,
+        starts: &[Unknowns],
+        stated: f64,
+        interrupt: &AtomicBool,
+    ) -> Option<WholeEstimate> {
         let is_stated = stated > 0.0;
         self.sigma = if is_stated { stated } else { UNSTATED * self.size() };
         let begin = self.begin(starts, interrupt)?;
@@ -95,7 +100,7 @@ impl WholeRecord {
             candidates.retain(|found| found.is_sure);
         }
         let mut told = weighed(candidates).map(|told| self.widened(told, is_stated))?;
-        told.best.is_sure &= self.is_told(&told.best);
+        told.best.is_sure &= self.is_determined(&told.best);
         (is_stated || self.is_exact(&told.best) || self.is_spread(&told.best)).then_some(told)
     }
 
@@ -187,13 +192,17 @@ impl WholeRecord {
     }
 
     /// Whether the residual passes the chi-square test, where a deviation is stated. The covariance about a motion that fails it is that of another one.
-    fn is_told(&self, found: &Found) -> bool {
+    fn is_determined(&self, found: &Found) -> bool {
         !self.stated || self.is_explained(found.shape.chi_square, self.times.len())
     }
 
     /// Whether the residual is zero, or noise.
     fn is_noise(&self, found: &Found) -> bool {
-        if self.stated { self.is_told(found) } else { self.is_exact(found) || self.alike(found) < ALIKE }
+        if self.stated {
+            self.is_determined(found)
+        } else {
+            self.is_exact(found) || self.alike(found) < ALIKE
+        }
     }
 
     /// Other series, and splines, that explain measurements with noise as large as these: where this one fails, or its band is wide, the motion that was found first need not be the likeliest, nor the only one. A search
@@ -261,7 +270,7 @@ impl WholeRecord {
     }
 
     /// A residual larger than noise increases all deviations; and where the residuals of neighbours are correlated, no sample counts as an independent one.
-    fn widened(&self, mut told: Told, is_stated: bool) -> Told {
+    fn widened(&self, mut told: WholeEstimate, is_stated: bool) -> WholeEstimate {
         let best = &told.best;
         let spread = (best.shape.chi_square / best.shape.degrees as f64).max(1.0);
         let is_noise = is_stated && self.is_explained(best.shape.chi_square, self.times.len());
@@ -333,7 +342,7 @@ fn likeliest(candidates: &[Found]) -> Option<&Found> {
 }
 
 /// The candidates that the measurements do not refute, with their probabilities, the likeliest first.
-fn weighed(mut candidates: Vec<Found>) -> Option<Told> {
+fn weighed(mut candidates: Vec<Found>) -> Option<WholeEstimate> {
     let mut refuted = refuted(&candidates).into_iter();
     candidates.retain(|_| refuted.next() == Some(false));
     candidates.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
@@ -344,5 +353,5 @@ fn weighed(mut candidates: Vec<Found>) -> Option<Told> {
         candidates.map(|other| ((other.evidence - best.evidence).exp(), other)).collect();
     let total = 1.0 + weights.iter().map(|(weight, _)| weight).sum::<f64>();
     let others = weights.into_iter().map(|(weight, other)| (weight / total, other));
-    Some(Told { best, others: others.filter(|(probability, _)| *probability > UNLIKELY).collect() })
+    Some(WholeEstimate { best, others: others.filter(|(probability, _)| *probability > UNLIKELY).collect() })
 }

@@ -58,7 +58,8 @@ impl Checks<'_> {
         if value.is_finite() && value > 0.0 {
             return Ok(());
         }
-        let help = format!("give a number above zero{}", spaced(unit));
+        let finite = if value.is_infinite() { "finite " } else { "" };
+        let help = format!("give a {finite}number above zero{}", spaced(unit));
         Err(self.wrong(place, format!("'{}' has to be positive, and is {value}", last(place)), help))
     }
 

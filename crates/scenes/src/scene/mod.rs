@@ -5,6 +5,7 @@
 
 mod check;
 mod columns;
+pub(crate) mod hints;
 mod keys;
 mod observing;
 pub(crate) mod place;
@@ -22,7 +23,7 @@ pub(crate) use simulated::sample_times;
 pub use simulated::{Body, LibraryBody, Palms, SceneOutline, Simulated, SimulatedSystem};
 
 use palmistry_bodies::mechanics::Palm;
-use palmistry_io::foreign::{name_of, shown_path};
+use palmistry_io::foreign::name_of;
 use palmistry_lang::{Code, Problem, System, load};
 use palmistry_observe::{ColumnNames, FaultRules};
 use place::Places;
@@ -82,9 +83,8 @@ impl Scene {
         let named = [("model", Some(&scene.model)), ("data.record", scene.data.record.as_ref())];
         for (place, file) in named.into_iter().filter_map(|(place, file)| Some((place, file?))) {
             let is_stream = place == "data.record" && file == Path::new(check::STREAM_NAME);
-            if !is_stream && !palmistry_io::file::is_file(file) {
-                let message = format!("there is no file {}", shown_path(file));
-                let help = "a file is looked for from the folder in which the scene lies";
+            let what = if place == "model" { hints::PROOF_FILE } else { "a recording" };
+            if let Some((message, help)) = hints::refused_file(file, what).filter(|_| !is_stream) {
                 return Err(scene.error_at(place, message, "named here", help));
             }
         }
@@ -113,6 +113,18 @@ impl Scene {
     ) -> SceneError {
         // the text was parsed before: it has places
         let span = Places::of(&self.text).map_or(0..0, |places| places.value(place));
+        Problem::new(Code::SceneValue, &span, message, label).help(help).locate(&self.name, &self.text)
+    }
+
+    /// An error that marks a key of this scene, named by the tables in which it stands and itself.
+    pub(crate) fn error_at_key(
+        &self,
+        place: &[&str],
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> SceneError {
+        let span = Places::of(&self.text).map_or(0..0, |places| places.key_of(place));
         Problem::new(Code::SceneValue, &span, message, label).help(help).locate(&self.name, &self.text)
     }
 

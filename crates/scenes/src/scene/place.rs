@@ -1,6 +1,7 @@
 //! Where in the text of a scene each key and value stands, and the errors at these places as text.
 
-use palmistry_lang::{Code, Problem, nearest};
+use super::hints;
+use palmistry_lang::{Code, Problem};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -8,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 /// The places of a text.
 pub(crate) struct Places<'a> {
     table: Spanned<DeTable<'a>>,
-    length: usize,
+    text: &'a str,
 }
 
 /// A key and its value, where they stand.
@@ -21,10 +22,17 @@ impl<'a> Places<'a> {
     pub fn of(text: &'a str) -> Result<Self, Problem> {
         let table = DeTable::parse(text).map_err(|error| {
             let span = error.span().unwrap_or(text.len()..text.len());
-            Problem::new(Code::SceneText, &span, in_words(error.message()), "here")
-                .help("a scene is a TOML file (toml.io)")
+            let toml = "a scene is a TOML file (toml.io)";
+            let help = match hints::of_syntax(text, &span) {
+                _ if error.message() == "duplicate key" => {
+                    format!("it is there twice: leave one out; {toml}")
+                }
+                Some(hint) => format!("{hint}; {toml}"),
+                None => toml.to_owned(),
+            };
+            Problem::new(Code::SceneText, &span, in_words(error.message()), "here").help(help)
         })?;
-        Ok(Places { table, length: text.len() })
+        Ok(Places { table, text })
     }
 
     /// The span of a value, named by its keys as in `palms.prescribed[1].start`. Of a place that is not there, what
@@ -38,6 +46,20 @@ impl<'a> Places<'a> {
         self.walk(place).map_or(self.top(), |entry| entry.key)
     }
 
+    /// The span of a key that may have dots or brackets in it, named by the tables in which it stands and itself.
+    pub fn key_of(&self, path: &[&str]) -> Range<usize> {
+        let (mut table, mut found) = (Some(self.table.get_ref()), self.top());
+        for part in path {
+            let Some((key, value)) =
+                table.and_then(|t| t.iter().find(|(k, _)| k.get_ref().as_ref() == *part))
+            else {
+                break;
+            };
+            (found, table) = (key.span(), value.get_ref().as_table());
+        }
+        found
+    }
+
     /// Whether a table of the text has this key.
     pub fn has(&self, table: &str, key: &str) -> bool {
         let named = self.table.get_ref().iter().find(|(name, _)| name.get_ref().as_ref() == table);
@@ -47,7 +69,7 @@ impl<'a> Places<'a> {
 
     /// The start of the text, where missing keys are marked.
     fn top(&self) -> Range<usize> {
-        0..usize::from(self.length > 0)
+        0..usize::from(!self.text.is_empty())
     }
 
     fn walk(&self, place: &str) -> Option<Entry<'a, '_>> {
@@ -72,6 +94,21 @@ impl<'a> Places<'a> {
             found = Some(Entry { key: at.span(), value });
         }
         found
+    }
+
+    /// The keys on the way to the value that has a span, or to the innermost one around it.
+    fn path_to(&self, span: &Range<usize>) -> Vec<&str> {
+        let (mut table, mut path) = (Some(self.table.get_ref()), Vec::new());
+        while let Some(entries) = table {
+            let has_it = |value: &Spanned<DeValue>| {
+                let own = value.span();
+                own.start <= span.start && span.end <= own.end
+            };
+            let Some((key, value)) = entries.iter().find(|(_, value)| has_it(value)) else { break };
+            path.push(key.get_ref().as_ref());
+            table = value.get_ref().as_table();
+        }
+        path
     }
 
     /// The place of a key of this name within a span.
@@ -102,14 +139,10 @@ impl<'a> Places<'a> {
         let message = error.message();
         let span = error.span().unwrap_or(self.top());
         let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-        let suggest = |unknown: &str, known: &[&str]| match nearest(unknown, known.iter().copied()) {
-            Some(name) => format!("perhaps you meant '{name}'"),
-            None => format!("known here: {}", known.join(", ")),
-        };
         match (quoted.split_first(), message) {
             (Some((unknown, known)), m) if m.starts_with("unknown field") => {
                 // for a table that is read by hand the span is that of its header
-                let after = || self.key_within(unknown, &(span.start..self.length));
+                let after = || self.key_within(unknown, &(span.start..self.text.len()));
                 let place = self.key_within(unknown, &span).or_else(after).unwrap_or(span);
                 Problem::new(
                     Code::SceneKey,
@@ -117,11 +150,11 @@ impl<'a> Places<'a> {
                     format!("unknown key '{unknown}'"),
                     "not a key of this table",
                 )
-                .help(suggest(unknown, known))
+                .help(hints::of_key(unknown, known))
             }
             (Some((unknown, known)), m) if m.starts_with("unknown variant") => {
                 Problem::new(Code::SceneValue, &span, format!("'{unknown}' is not known"), "here")
-                    .help(suggest(unknown, known))
+                    .help(hints::of_word(unknown, known))
             }
             (Some((missing, _)), m) if m.starts_with("missing field") => {
                 let help = EXAMPLES.iter().find(|(key, _)| key == missing).map(|(_, example)| *example);
@@ -134,8 +167,17 @@ impl<'a> Places<'a> {
                 Problem::new(Code::SceneKey, &place, format!("the key '{missing}' is missing"), label)
                     .help(help)
             }
-            _ => Problem::new(Code::SceneValue, &span, in_words(message), "this")
-                .help("write a value of the kind that is expected"),
+            _ => {
+                let message = in_words(message);
+                let help = match message.rsplit_once("expected ") {
+                    Some((_, expected)) if message.starts_with("invalid ") => {
+                        let written = self.text.get(span.clone()).unwrap_or_default();
+                        hints::of_kind(&self.path_to(&span), written, expected)
+                    }
+                    _ => "write a value of the kind that is expected".to_owned(),
+                };
+                Problem::new(Code::SceneValue, &span, message, "this").help(help)
+            }
         }
     }
 }
@@ -182,6 +224,8 @@ fn in_words(message: &str) -> String {
         ("an array of length", "a list of length"),
         ("a string", "a text"),
         ("path string", "a text"),
+        ("struct ParameterKeys", "a table with 'bounds'"),
+        ("struct PriorKeys", "a table with 'law', 'centre' and 'spread'"),
         ("string \"", "the text \""),
     ];
     // only the part that serde writes, not its quotes from the file

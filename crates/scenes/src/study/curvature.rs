@@ -70,18 +70,18 @@ pub struct CurvatureMap {
     /// The motions.
     pub motions: Vec<StudiedMotion>,
     /// For each pair of curvatures, rows by that of palm 2, the bound of each motion; none where it was interrupted before.
-    pub told: Vec<Vec<Option<WindowBound>>>,
+    pub bounds: Vec<Vec<Option<WindowBound>>>,
 }
 
 impl CurvatureMap {
     /// The ratios of the bounds of a pair of curvatures to those of flat palms; nothing where there is no motion to compare.
     pub fn ratio(&self, cell: usize) -> Option<CurvatureRatio> {
-        let told = self.told.get(cell)?;
-        let ratio = |(told, motion): (&Option<WindowBound>, &StudiedMotion)| match motion.flat {
-            WindowBound::Bound(flat) => Some((*told)?.bound()? / flat),
+        let bounds = self.bounds.get(cell)?;
+        let ratio = |(bounds, motion): (&Option<WindowBound>, &StudiedMotion)| match motion.flat {
+            WindowBound::Bound(flat) => Some((*bounds)?.bound()? / flat),
             _ => None,
         };
-        let mut ratios: Vec<f64> = told.iter().zip(&self.motions).filter_map(ratio).collect();
+        let mut ratios: Vec<f64> = bounds.iter().zip(&self.motions).filter_map(ratio).collect();
         ratios.sort_by(f64::total_cmp);
         let (least, greatest) = (*ratios.first()?, *ratios.last()?);
         Some(CurvatureRatio { median: ratios[ratios.len() / 2], least, greatest, motions: ratios.len() })
@@ -151,12 +151,12 @@ impl<'a> CurvatureTrials<'a> {
             0.0 => Palm::Flat,
             _ => Palm::Circular { radius: 1.0 / curvature },
         });
-        told(&self.experiment.scene, forms, motion, self.study.noise).unwrap_or(WindowBound::NotHeld)
+        bounds(&self.experiment.scene, forms, motion, self.study.noise).unwrap_or(WindowBound::NotHeld)
     }
 
     /// The map from all bounds, in their order.
-    pub fn map(&self, told: &[Option<WindowBound>]) -> CurvatureMap {
-        let (flat, cells) = told.split_at(self.motions.len().min(told.len()));
+    pub fn map(&self, bounds: &[Option<WindowBound>]) -> CurvatureMap {
+        let (flat, cells) = bounds.split_at(self.motions.len().min(bounds.len()));
         let motions = self.motions.iter().zip(flat).map(|([orientation, rate], flat)| StudiedMotion {
             orientation: *orientation,
             rate: *rate,
@@ -166,13 +166,13 @@ impl<'a> CurvatureTrials<'a> {
             noise: self.study.noise,
             curvatures: self.curvatures.clone(),
             motions: motions.collect(),
-            told: cells.chunks(self.motions.len()).map(<[Option<WindowBound>]>::to_vec).collect(),
+            bounds: cells.chunks(self.motions.len()).map(<[Option<WindowBound>]>::to_vec).collect(),
         }
     }
 }
 
 /// The bound of palms of these forms in the first window of a scene with this initial state; nothing where they do not hold the body so long.
-fn told(
+fn bounds(
     scene: &Scene,
     forms: [Palm<f64>; 2],
     [orientation, rate]: [f64; 2],
@@ -221,10 +221,10 @@ pub fn curvature_map(
         if interrupt.load(Ordering::Relaxed) {
             return None;
         }
-        let told = all.trial(place);
+        let bounds = all.trial(place);
         done();
-        Some(told)
+        Some(bounds)
     };
-    let told: Vec<Option<WindowBound>> = (0..all.count()).into_par_iter().map(one).collect();
-    Ok(all.map(&told))
+    let bounds: Vec<Option<WindowBound>> = (0..all.count()).into_par_iter().map(one).collect();
+    Ok(all.map(&bounds))
 }

@@ -26,7 +26,7 @@ pub struct StudyPart {
     pub(super) last: u64,
     pub(super) noise: Vec<Trial>,
     pub(super) arrives: Vec<bool>,
-    pub(super) told: Vec<WindowBound>,
+    pub(super) bounds: Vec<WindowBound>,
 }
 
 /// The results of all trials of a scene's studies; empty for studies that it does not have.
@@ -172,13 +172,13 @@ impl<'a> Studies<'a> {
         };
         let of_palms = |place: usize| {
             let of = self.curvature.as_ref().filter(|_| goes_on())?;
-            let told = of.trial(place - self.draws() - self.guesses());
+            let bounds = of.trial(place - self.draws() - self.guesses());
             done();
-            Some(told)
+            Some(bounds)
         };
         let noise = draws.into_par_iter().map(of_noise).collect::<Option<Vec<Trial>>>()?;
         let arrives = guesses.into_par_iter().map(of_guess).collect::<Option<Vec<bool>>>()?;
-        let told = bounds.into_par_iter().map(of_palms).collect::<Option<Vec<WindowBound>>>()?;
+        let bounds = bounds.into_par_iter().map(of_palms).collect::<Option<Vec<WindowBound>>>()?;
         // an interrupted trial has another result
         goes_on().then_some(StudyPart {
             asked: self.asked,
@@ -188,7 +188,7 @@ impl<'a> Studies<'a> {
             last,
             noise,
             arrives,
-            told,
+            bounds,
         })
     }
 
@@ -210,22 +210,22 @@ impl<'a> Studies<'a> {
                 return Err(StudyMergeError::OtherReadings(name.clone()));
             }
             let kinds = self.kinds(&(part.first as usize..part.last as usize));
-            let lengths = [part.noise.len(), part.arrives.len(), part.told.len()];
+            let lengths = [part.noise.len(), part.arrives.len(), part.bounds.len()];
             let has_all = |trial: &Trial| trial.estimate().is_none_or(|estimate| estimate.len() == sought);
             if kinds.map(|places| places.len()) != lengths || !part.noise.iter().all(has_all) {
                 return Err(StudyMergeError::Contradicts(name.clone()));
             }
         }
-        let (mut noise, mut arrives, mut told) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut noise, mut arrives, mut bounds) = (Vec::new(), Vec::new(), Vec::new());
         for (_, part) in in_order(parts, StudyPart::range, self.trials())? {
             noise.extend(part.noise);
             arrives.extend(part.arrives.into_iter().map(Some));
-            told.extend(part.told.into_iter().map(Some));
+            bounds.extend(part.bounds.into_iter().map(Some));
         }
         Ok(Studied {
             noise: self.noise.as_ref().map_or_else(Vec::new, |all| all.levels(&noise)),
             basins: self.basins.as_ref().map_or_else(Vec::new, |all| all.basins(&arrives)),
-            curvature: self.curvature.as_ref().map(|all| all.map(&told)),
+            curvature: self.curvature.as_ref().map(|all| all.map(&bounds)),
         })
     }
 }

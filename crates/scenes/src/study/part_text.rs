@@ -48,7 +48,7 @@ impl StudyPart {
             last: self.last,
             noise: self.noise.iter().map(trial).collect(),
             arrives: self.arrives.clone(),
-            told: self.told.iter().map(|told| told.bound().map(|bound| Bits(bound.to_bits()))).collect(),
+            told: self.bounds.iter().map(|one| one.bound().map(|bound| Bits(bound.to_bits()))).collect(),
         };
         seal(FORMAT, written)
     }
@@ -78,8 +78,8 @@ impl StudyPart {
             Some(bound) if bound >= 0.0 => Ok(WindowBound::Bound(bound)),
             Some(_) => Err(CONTRADICTS),
         };
-        let told = told.into_iter().map(bound).collect::<Result<_, _>>()?;
+        let bounds = told.into_iter().map(bound).collect::<Result<_, _>>()?;
         let (asked, measurements) = (question.0, measurements.0);
-        Ok(StudyPart { asked, measurements, trials, first, last, noise, arrives, told })
+        Ok(StudyPart { asked, measurements, trials, first, last, noise, arrives, bounds })
     }
 }

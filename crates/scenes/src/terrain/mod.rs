@@ -7,7 +7,7 @@ pub use closure::{Closure, ClosureSetting};
 pub use closure_rank::ComputedRank;
 
 use super::scene::{Scene, SceneError, SimulatedRobot};
-use super::simulation::BEGINNING;
+use super::simulation::FIRST_SAMPLES;
 use super::system_motion::SystemMotion;
 use palmistry_bodies::mechanics::terrain::{Ground, GroundWave, Robot, RobotDrive, RobotEnd, RobotMoment};
 use palmistry_observe::{Lost, Response};
@@ -97,7 +97,7 @@ impl SystemMotion {
         all: bool,
     ) -> Result<SystemMotion, SceneError> {
         let mut times = simulated.times(scene.sensor.jitter, scene.seed);
-        times.truncate(if all { usize::MAX } else { BEGINNING });
+        times.truncate(if all { usize::MAX } else { FIRST_SAMPLES });
         let RobotDrive { moments, end } = drive(simulated, &times);
         let ended = match end {
             RobotEnd::Completed => None,

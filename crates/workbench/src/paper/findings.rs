@@ -58,6 +58,8 @@ pub struct FileFindings {
     pub certificate: Option<RegionAnswer>,
     /// What was left out, and why.
     pub left_out: Vec<LeftOut>,
+    /// What was not done or done in part because the system has many unknowns, and the command that does it.
+    pub too_large: Vec<LeftOut>,
 }
 
 impl FileFindings {
@@ -91,6 +93,7 @@ impl FileFindings {
             stress: None,
             certificate: None,
             left_out: Vec::new(),
+            too_large: Vec::new(),
         }
     }
 

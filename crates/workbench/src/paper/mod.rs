@@ -4,6 +4,7 @@
 //!
 //! This floor knows no palm, no chapter and no file name. It calls everything below and draws nothing.
 
+mod bounds;
 mod findings;
 mod folder;
 mod left_out;
@@ -18,6 +19,8 @@ pub use findings::{FileFindings, Findings};
 #[doc(hidden)]
 pub use folder::MANIFEST;
 pub use folder::Paper;
+#[doc(hidden)]
+pub use left_out::LeftOut;
 #[doc(hidden)]
 pub use numbering::{NumberedEquation, Numbering};
 #[doc(hidden)]

@@ -1,5 +1,6 @@
 //! A paper taken through everything, file by file.
 
+use super::bounds::{fewer_samples, left_to_a_command};
 use super::findings::{DerivativesFound, FileFindings, Findings};
 use super::folder::Paper;
 use super::left_out::LeftOut;
@@ -31,7 +32,8 @@ pub struct VerifyOptions<'a> {
     pub seed: u64,
     /// Set from outside to stop early; what was found is kept.
     pub interrupt: &'a AtomicBool,
-    /// Called with each step that is done, and with the number of all steps.
+    /// Called with each step when it begins, if it may take a while, and when it is done: with the number of steps that are done and of
+    /// all.
     pub progress: &'a (dyn Fn(&str, u64, u64) + Sync),
     /// Whether parts of which only the times are of interest are run as well.
     pub timed: bool,
@@ -227,6 +229,11 @@ impl Run<'_> {
         self.options.interrupt.load(Ordering::Relaxed)
     }
 
+    fn begin(&self, what: &str) {
+        let done = self.done.load(Ordering::Relaxed);
+        (self.options.progress)(what, done, self.steps.max(done + 1));
+    }
+
     fn step(&self, what: &str) {
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         (self.options.progress)(what, done, self.steps.max(done));
@@ -252,6 +259,7 @@ impl Run<'_> {
         if self.stopped() {
             return;
         }
+        self.begin(what);
         let result = isolated(work).and_then(|found| found);
         self.step(what);
         // what was broken off is no finding
@@ -266,6 +274,7 @@ impl Run<'_> {
     fn examine(&self, place: usize, system: &System, measured: &Measured) {
         let (seed, interrupt) = (self.options.seed, self.options.interrupt);
         if has_a_rank(system) {
+            self.found().files[place].too_large.extend(fewer_samples(system));
             for set in std::iter::once(None).chain(system.sets.iter().map(Some)) {
                 let what = set.map_or("the whole sample box", |set| &set.name);
                 let rank = || Ok(rank_on(system, set, seed, interrupt));
@@ -296,6 +305,7 @@ impl Run<'_> {
                 return;
             }
             let what = format!("the reduction of {}", reduction.alias.text);
+            self.begin(&what);
             let result = isolated(|| reduce(system, reduction, &self.paper.folder, seed, interrupt))
                 .unwrap_or_else(|why| Err(LeftOut { what, why }));
             self.step("a reduction");
@@ -317,7 +327,7 @@ impl Run<'_> {
             let ways = || compare_ways(system, seed);
             self.keep(place, "automatic differentiation", ways, |file, found| file.ways = found);
         }
-        if measured.trade {
+        if measured.trade && self.is_small_enough(place, system, "speed against accuracy", "trade") {
             let question = TradeQuestion {
                 samples: TRADE_STATES,
                 seed,
@@ -329,11 +339,23 @@ impl Run<'_> {
             self.keep(place, "speed against accuracy", trade, |file, found| file.trade = Some(found));
         }
         if has_a_rank(system) && measured.extremes {
-            let stress = || stress(system, seed, interrupt);
-            self.keep(place, "the extremes", stress, |file, found| file.stress = Some(found));
+            if self.is_small_enough(place, system, "the extremes", "stress") {
+                let stress = || stress(system, seed, interrupt);
+                self.keep(place, "the extremes", stress, |file, found| file.stress = Some(found));
+            }
             let certify = || certify_region(&mut system.clone(), SUB_BOXES, interrupt);
             self.keep(place, "certified boxes", certify, |file, found| file.certificate = Some(found));
         }
+    }
+}
+
+impl Run<'_> {
+    /// Whether something is done here; if not, that is noted.
+    fn is_small_enough(&self, place: usize, system: &System, what: &str, command: &str) -> bool {
+        let left = left_to_a_command(system, what, command);
+        let is_done = left.is_none();
+        self.found().files[place].too_large.extend(left);
+        is_done
     }
 }
 

@@ -1,5 +1,6 @@
 //! The sets, maps and lines of one system: ranks decided, and how well states are observable drawn.
 
+use super::bounds::samples;
 use super::left_out::LeftOut;
 use crate::tradeoff::{Landscape, LandscapeRows, Map, PictureRows, Slope};
 use dashu::rational::RBig;
@@ -12,9 +13,6 @@ use palmistry_rank::observability::{CodistributionError, OWN_ROWS};
 use palmistry_rank::sweep::{BranchAnswer, RankAnswer, RankError, RankQuestion, SweepReport, answer_rank};
 use std::sync::atomic::AtomicBool;
 
-/// States of the sample box, and of each set, at which ranks are decided.
-const SAMPLES: u64 = 20_000;
-const SAMPLES_ON_A_SET: u64 = 200;
 /// Cells of a map.
 const MAP: (usize, usize) = (120, 80);
 const POINTS_ON_A_LINE: usize = 65;
@@ -100,7 +98,7 @@ pub(super) fn has_a_rank(system: &System) -> bool {
 /// The rank on the sample box, or on one set.
 pub(super) fn rank_on(system: &System, set: Option<&NamedSet>, seed: u64, interrupt: &AtomicBool) -> SetRank {
     let question = RankQuestion {
-        samples: if set.is_none() { SAMPLES } else { SAMPLES_ON_A_SET },
+        samples: samples(system, set.is_some()),
         seed,
         conditions: set.map(|set| set.written.clone()).unwrap_or_default(),
         interrupt,

@@ -42,7 +42,7 @@ impl Checks<'_> {
             let help = "name one or more: newton, trust-region, multiple-shooting, integration, kalman, unscented, smoother, high-gain";
             return Err(self.wrong("observer.methods", "there is no method", help));
         }
-        self.names("observer.methods", &methods, |method| format!("{method:?}"))?;
+        self.names("observer.methods", &methods, |method| format!("'{}'", method.name()))?;
         self.names("observer.clamp", &keys.clamp, |name| format!("'{name}'"))?;
         for (index, name) in keys.clamp.iter().enumerate() {
             self.sought(&format!("observer.clamp[{index}]"), name, &keys.estimate)?;
@@ -209,6 +209,18 @@ impl Checks<'_> {
             (None, None) => Ok(Guess::Sample),
             (None, Some(off)) => {
                 self.finite("observer.guess_off", off)?;
+                // a percentage would start far from everything, without a word
+                if off.abs() > 1.0 {
+                    let message = format!(
+                        "'guess_off' is a fraction, and with {off} the guess is {} times the true value",
+                        1.0 + off
+                    );
+                    let help = format!(
+                        "{off} % is guess_off = {}; farther off, give the values: guess = {{ ... }}",
+                        off / 100.0
+                    );
+                    return Err(self.wrong("observer.guess_off", message, help));
+                }
                 if source.samples.is_none() {
                     let message = "recorded data has no truth from which a guess could be off";
                     let help = "give the first guess itself: guess = { r1 = 2.0, ... }";

@@ -70,7 +70,7 @@ fn every_value_is_checked_and_its_place_marked() {
         ("jitter = 0.001", "s1 = { delay = -0.1 }", "'delay' must not be negative", "-0.1", "in s"),
         ("spike = 6.0", "spike = 0", "'spike' has to be positive", "0", "usual departures"),
         ("on_fault = \"skip\"", "on_fault = 3", "expected", "3", ""),
-        ("\"kalman\",", "\"newton\",", "Newton is there twice", "\"newton\"", "leave one out"),
+        ("\"kalman\",", "\"newton\",", "'newton' is there twice", "\"newton\"", "leave one out"),
         ("\"r2\", \"omega0\"]", "\"r1\", \"omega0\"]", "'r1' is there twice", "\"r1\"", "leave one out"),
         ("clamp = [\"omega0\"]", "clamp = [\"omega\"]", "'omega' is not in 'estimate'", "clamp", "'omega0'"),
         (
@@ -91,6 +91,7 @@ fn every_value_is_checked_and_its_place_marked() {
             "guess_off",
             "leave one out",
         ),
+        ("guess = {", "guess_off = 10 # {", "'guess_off' is a fraction", "10", "10 % is guess_off = 0.1"),
         ("window = 60", "window = 402", "'window' cannot be 402", "402", "from 2 to 401"),
         ("steps = 4", "steps = 0", "'steps' cannot be 0", "0", "from 1"),
         (

@@ -124,7 +124,7 @@ impl Errors<'_> {
 }
 
 /// A table of all verdicts that occur: what they mean, and how many entries and numbered equations have them.
-pub(crate) fn words_markdown(numbering: &Numbering, outcomes: &[&Outcome], out: &mut String) {
+pub(crate) fn verdicts_markdown(numbering: &Numbering, outcomes: &[&Outcome], out: &mut String) {
     let rows = numbering.equations(outcomes.iter().copied());
     let _ = writeln!(out, "| word | entries | equations | what it says |\n|---|---:|---:|---|");
     for (word, count) in counts(outcomes.iter().copied()) {

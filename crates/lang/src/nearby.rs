@@ -1,0 +1,55 @@
+//! The file that was meant where there is none of a name.
+
+use super::error::nearest;
+use palmistry_io::file::files_in;
+use palmistry_io::foreign::{shown, shown_path};
+use std::path::Path;
+
+/// Of more files in a folder none is looked for.
+const MOST_FILES: usize = 2000;
+
+/// What may be meant by the name of a file that is not there: a file of the same folder.
+pub fn nearest_file(path: &Path) -> Option<String> {
+    let wanted = path.file_name()?.to_str()?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let files = files_in(folder.unwrap_or(Path::new("."))).ok().filter(|files| files.len() <= MOST_FILES)?;
+    let names = || files.iter().filter_map(|file| file.file_name()?.to_str());
+    // in other letters, without its extension, or with what an editor puts behind a file
+    let same = |name: &&str| name.eq_ignore_ascii_case(wanted);
+    let stem = |name: &&str| Path::new(name).file_stem().is_some_and(|stem| stem == wanted);
+    let begins = |name: &&str| {
+        let rest = wanted.strip_prefix(*name);
+        rest.is_some_and(|rest| rest.starts_with([':', '#', ',', ' ']))
+    };
+    let found = names().find(same).or_else(|| names().find(stem)).or_else(|| names().find(begins));
+    let near = found.or_else(|| nearest(wanted, names()))?;
+    Some(folder.map_or_else(|| shown(near).into_owned(), |folder| shown_path(&folder.join(near))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::nearest_file;
+
+    #[test]
+    fn the_file_that_is_meant_is_found() {
+        let folder = std::env::temp_dir().join(format!("palmistry-nearby-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        for name in ["tanks.proof", "beacons.proof", "run.csv"] {
+            std::fs::write(folder.join(name), "").unwrap();
+        }
+        for (wanted, found) in [
+            ("tanks", Some("tanks.proof")),
+            ("Tanks.proof", Some("tanks.proof")),
+            ("tanks.proof:8", Some("tanks.proof")),
+            ("tank.proof", Some("tanks.proof")),
+            ("run.cvs", Some("run.csv")),
+            ("nothing.like.it", None),
+        ] {
+            let near = nearest_file(&folder.join(wanted));
+            let name = near.as_deref().and_then(|near| near.rsplit('/').next());
+            assert_eq!(name, found, "{wanted}");
+        }
+        assert_eq!(nearest_file(&folder.join("no/such/folder")), None);
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}
