@@ -134,11 +134,14 @@ impl Observe {
         }
         if asks_for_studies && experiment.scene.study.is_empty() {
             let message = "the scene has no studies";
-            return Err(Unusable::report(
-                Code::Question,
-                message,
-                "add [study.noise], [study.basin] or [study.curvature] to it, or leave out --studies",
-            ));
+            let asked = if self.studies {
+                "--studies"
+            } else {
+                "--shard, --merge and --missing, which are of studies"
+            };
+            let help =
+                format!("add [study.noise], [study.basin] or [study.curvature] to it, or leave out {asked}");
+            return Err(Unusable::report(Code::Question, message, help));
         }
         let merged = if self.shards.are_asked() {
             match self.shard_or_merge(&experiment, &bar)? {

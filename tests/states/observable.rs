@@ -317,7 +317,8 @@ fn what_cannot_be_asked_is_refused_with_advice() {
         (vec!["rank", SAME_RATE, "--at", "omega0=1,omega0=2"], "twice"),
         (vec!["rank", SAME_RATE, "--where", "r1^2 = 2"], "not linear"),
         (vec!["rank", SAME_RATE, "--where", "r1 ="], "expected"),
-        (vec!["rank", "no/such.proof"], "cannot read"),
+        (vec!["rank", "no/such.proof"], "there is no file no/such.proof"),
+        (vec!["rank", SAME_RATE, "--where", "r1 == 0"], "one '='"),
     ] {
         let output = palmistry(&arguments);
         let words = String::from_utf8_lossy(&output.stderr).replace("\n", " ").replace("│", " ");

@@ -283,7 +283,7 @@ fn files_that_are_no_recording_are_refused() {
         (binary, "no column 'time'"),
         (other, "neither a .csv nor a .parquet file"),
         (directory, "cannot read"),
-        (folder.path().join("none.csv"), "cannot read"),
+        (folder.path().join("none.csv"), "there is no file"),
     ] {
         for on_fault in ["stop", "skip"] {
             let (output, found) = replayed(&scene(&folder, on_fault), &file);
