@@ -3,8 +3,8 @@
 
 use super::{Unusable, Verb};
 use miette::Report;
-use palmistry::file::{PACKED, is_file, is_folder, read_head};
-use palmistry::foreign::shown_path;
+use palmistry::file::{PACKED, files_in, is_file, is_folder, read_head};
+use palmistry::foreign::{shown, shown_path};
 use palmistry::system::{Code, nearest_file};
 use std::path::Path;
 
@@ -112,9 +112,24 @@ impl<'a> Given<'a> {
         if let Some((_, help)) = rules.iter().find(|(is_so, _)| *is_so) {
             return help();
         }
-        let help = near(self.path);
+        let help = near(self.path).or_else(|| others(self.path));
         help.unwrap_or_else(|| "a file is looked for from the folder in which you are; a name with blanks stands in quotation marks".to_owned())
     }
+}
+
+/// So many files of a folder are listed.
+const LISTED: usize = 6;
+
+/// The other files of the kind in the folder of one that is not there.
+fn others(path: &Path) -> Option<String> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let files = files_in(folder).ok()?;
+    let mut same =
+        files.iter().filter(|file| file.extension().is_some() && file.extension() == path.extension());
+    let names: Vec<_> =
+        same.by_ref().take(LISTED).filter_map(|file| file.file_name()?.to_str()).map(shown).collect();
+    let more = if same.next().is_some() { ", ..." } else { "" };
+    (!names.is_empty()).then(|| format!("the folder has {}{more}", names.join(", ")))
 }
 
 /// What a file is, a little closer.

@@ -3,6 +3,7 @@
 use super::error::nearest;
 use palmistry_io::file::files_in;
 use palmistry_io::foreign::{shown, shown_path};
+use std::ffi::OsStr;
 use std::path::Path;
 
 /// Of more files in a folder none is looked for.
@@ -22,8 +23,22 @@ pub fn nearest_file(path: &Path) -> Option<String> {
         rest.is_some_and(|rest| rest.starts_with([':', '#', ',', ' ']))
     };
     let found = names().find(same).or_else(|| names().find(stem)).or_else(|| names().find(begins));
-    let near = found.or_else(|| nearest(wanted, names()))?;
+    // ends of names are alike without being meant
+    let (stem, end) = (Path::new(wanted).file_stem()?.to_str()?, Path::new(wanted).extension());
+    let stems = names().filter(|name| Path::new(name).extension() == end);
+    let stems = stems.filter_map(|name| Path::new(name).file_stem()?.to_str());
+    let slip = || nearest(stem, stems).and_then(|near| names().find(|name| *name == with_end(near, end)));
+    let other_end = || names().find(|name| Path::new(name).file_stem().is_some_and(|own| own == stem));
+    let near = found.or_else(slip).or_else(other_end)?;
     Some(folder.map_or_else(|| shown(near).into_owned(), |folder| shown_path(&folder.join(near))))
+}
+
+/// A name with its end.
+fn with_end(stem: &str, end: Option<&OsStr>) -> String {
+    match end {
+        Some(end) => format!("{stem}.{}", end.to_string_lossy()),
+        None => stem.to_owned(),
+    }
 }
 
 #[cfg(test)]
@@ -43,6 +58,8 @@ mod tests {
             ("tanks.proof:8", Some("tanks.proof")),
             ("tank.proof", Some("tanks.proof")),
             ("run.cvs", Some("run.csv")),
+            ("lanks.proof", Some("tanks.proof")),
+            ("nofile.proof", None),
             ("nothing.like.it", None),
         ] {
             let near = nearest_file(&folder.join(wanted));

@@ -61,8 +61,10 @@ pub fn faults_of(rows: &RecordRows, rules: &FaultRules) -> Vec<Fault> {
     for &column in &rows.needed[1..] {
         let resolution = rules.resolution.get(&rows.names[column]).copied().unwrap_or(0.0);
         let value = |row: usize| rows.rows[row].cells.get(column).and_then(Cell::finite);
+        // where a row has too many cells its values stand in other columns than their own
+        let whole = order.kept.iter().filter(|(row, _)| rows.rows[*row].surplus == 0);
         let points: Vec<(usize, f64, f64)> =
-            order.kept.iter().filter_map(|(row, time)| Some((*row, *time, value(*row)?))).collect();
+            whole.filter_map(|(row, time)| Some((*row, *time, value(*row)?))).collect();
         let series: Vec<(f64, f64)> = points.iter().map(|(_, time, value)| (*time, *value)).collect();
         let spike = |(index, departure): (usize, f64)| {
             let (row, _, value) = points[index];

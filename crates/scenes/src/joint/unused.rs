@@ -31,11 +31,12 @@ pub(super) fn refuse_unused(
         }
     }
     let written = names_in_formulas(scene, rows);
+    let moves =
+        |symbol| system.fields.iter().any(|field| field.components.iter().any(|(state, _)| *state == symbol));
     let parameters: Vec<&str> = system
         .symbols()
-        .filter(|(_, info)| info.kind == Kind::Parameter)
+        .filter(|(symbol, info)| info.kind != Kind::Imported && !moves(*symbol))
         .map(|(symbol, _)| system.symbol_name(symbol))
-        .chain(system.unknowns().into_iter().map(|symbol| system.symbol_name(symbol)))
         .collect();
     let estimated = scene.parameters.iter().map(|own| ("parameters", own.name.as_str()));
     for (table, name) in estimated.chain(scene.known.keys().map(|name| ("known", name.as_str()))) {
@@ -46,14 +47,17 @@ pub(super) fn refuse_unused(
             let unset = |other: &&str| {
                 !scene.known.contains_key(*other) && scene.parameters.iter().all(|own| own.name != **other)
             };
-            let written =
-                written.iter().map(String::as_str).filter(|other| system.find_symbol(other).is_none());
-            let all: Vec<&str> = parameters.iter().copied().chain(written).filter(unset).collect();
-            return Err(scene.error_at_key(
-                &[table, name],
-                message,
-                one_of("without a value are", name, &all),
-            ));
+            let is_new = |other: &&str| {
+                system.find_symbol(other).is_none() && !system.definitions.contains_key(*other)
+            };
+            let written = written.iter().map(String::as_str).filter(is_new);
+            let mut all: Vec<&str> = parameters.iter().copied().chain(written).collect();
+            // one that has no value yet is the likelier one
+            if all.iter().any(unset) {
+                all.retain(unset);
+            }
+            let help = one_of("its parameters without a value are", name, &all);
+            return Err(scene.error_at_key(&[table, name], message, help));
         }
     }
     let measured: BTreeSet<&str> = rows.rows.iter().map(|row| row.experiment.as_str()).collect();

@@ -271,6 +271,9 @@ fn of_value(key: &str, value: &str) -> Option<String> {
             false if rest.starts_with(char::is_alphabetic) || rest.starts_with('%') => {
                 format!("a number stands without its unit: write {key} = {number}{}", in_unit(key))
             }
+            false if rest.starts_with(['+', '-']) => {
+                format!("a formula stands in quotation marks, as in {key} = \"{value}\"")
+            }
             false => return None,
         });
     }
@@ -306,6 +309,10 @@ pub(super) fn of_kind(path: &[&str], written: &str, expected: &str) -> String {
     let is_list = written.starts_with('[');
     let example = EXAMPLES.iter().find(|(name, ..)| *name == key).map_or("1.0", |(_, example, _)| example);
     let unit = in_unit(key);
+    // tables of a list, where one is meant
+    if written.starts_with("[[") {
+        return format!("write [{key}], with one bracket");
+    }
     match expected {
         "a list of length 2" if table == "parameters" => {
             format!("write {key} = {{ bounds = [1e-3, 1e3] }}")
@@ -350,7 +357,6 @@ pub(super) fn of_kind(path: &[&str], written: &str, expected: &str) -> String {
         "a list" if written.starts_with(['"', '\'']) => format!("write a list, as in {key} = [\"{text}\"]"),
         "a list" => format!("write a list, as in {key} = [\"newton\"]")
             .replace("newton", if key == "methods" { "newton" } else { "x" }),
-        "a table" if written.starts_with("[[") => format!("write [{key}], with one bracket"),
         "a table" => format!("write a table, as in {key} = {{ x = 1 }}"),
         "a table with 'bounds'" => {
             format!("write {key} = {{ bounds = [1e-3, 1e3] }}; a value that is known stands under [known]")
@@ -441,6 +447,7 @@ mod tests {
             ("h1 = 1.", 7, "1.0"),
             ("h1(0) = 1.2", 2, "write h1 = ..."),
             ("h1 = pi", 5, "3.14159"),
+            ("u = 0.2 + sin(t)", 4, "as in u = \"0.2 + sin(t)\""),
         ] {
             let found = of_syntax(text, &(at..at)).unwrap_or_default();
             assert!(found.contains(help), "{text}: {found}");

@@ -98,16 +98,8 @@ impl<'a> Places<'a> {
 
     /// The keys on the way to the value that has a span, or to the innermost one around it.
     fn path_to(&self, span: &Range<usize>) -> Vec<&str> {
-        let (mut table, mut path) = (Some(self.table.get_ref()), Vec::new());
-        while let Some(entries) = table {
-            let has_it = |value: &Spanned<DeValue>| {
-                let own = value.span();
-                own.start <= span.start && span.end <= own.end
-            };
-            let Some((key, value)) = entries.iter().find(|(_, value)| has_it(value)) else { break };
-            path.push(key.get_ref().as_ref());
-            table = value.get_ref().as_table();
-        }
+        let mut path = Vec::new();
+        path_within(self.table.get_ref(), span, &mut path);
         path
     }
 
@@ -180,6 +172,21 @@ impl<'a> Places<'a> {
             }
         }
     }
+}
+
+/// Appends the keys on the way to the value that has a span, as far as there is one in a table. The span of a table is that of its header
+/// alone.
+fn path_within<'t>(table: &'t DeTable<'_>, span: &Range<usize>, path: &mut Vec<&'t str>) -> bool {
+    for (key, value) in table.iter() {
+        path.push(key.get_ref().as_ref());
+        let own = value.span();
+        let is_inside = value.get_ref().as_table().is_some_and(|inner| path_within(inner, span, path));
+        if is_inside || own.start <= span.start && span.end <= own.end {
+            return true;
+        }
+        path.pop();
+    }
+    false
 }
 
 /// Keys that a table cannot do without, with examples.

@@ -11,8 +11,8 @@ const SAMPLES_ON_A_SET: u64 = 200;
 /// Of the largest system at least so many.
 const FEWEST_SAMPLES: u64 = 100;
 
-/// Times the cube of the number of unknowns: about twenty seconds on one core.
-const MOST_WORK_OF_A_SWEEP: u64 = 700_000_000;
+/// Times the cube of the number of unknowns: about ten seconds on one core.
+const MOST_WORK_OF_A_SWEEP: u64 = 400_000_000;
 
 /// Of larger systems the extremes and speed against accuracy are left to the commands that do nothing else.
 const MOST_UNKNOWNS: usize = 40;
