@@ -105,7 +105,8 @@ impl Problem {
 
     /// Adds what to do about it.
     pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
+        // without advice there is no line for it
+        self.help = Some(help.into()).filter(|help| !help.is_empty());
         self
     }
 

@@ -355,8 +355,10 @@ pub(super) fn of_kind(path: &[&str], written: &str, expected: &str) -> String {
             "write a list, as in estimate = [\"x\"]; a first guess stands in guess = { x = 1 }".to_owned()
         }
         "a list" if written.starts_with(['"', '\'']) => format!("write a list, as in {key} = [\"{text}\"]"),
-        "a list" => format!("write a list, as in {key} = [\"newton\"]")
-            .replace("newton", if key == "methods" { "newton" } else { "x" }),
+        "a list" => {
+            let one = if key == "methods" { "newton" } else { "x" };
+            format!("write a list, as in {key} = [\"{one}\"]")
+        }
         "a table" => format!("write a table, as in {key} = {{ x = 1 }}"),
         "a table with 'bounds'" => {
             format!("write {key} = {{ bounds = [1e-3, 1e3] }}; a value that is known stands under [known]")
