@@ -2,15 +2,20 @@
 //! that is more than a few letters, or has cases itself, becomes a definition first. What is written then grows as the file does: nested cases
 //! would double with every step.
 
-use super::expression::{ForeignExpr, ForeignKind};
-use super::model::{ForeignModel, ForeignRate};
+use super::expression::{ForeignExpr, ForeignKind, ForeignOrder};
+use super::model::{ForeignConstant, ForeignModel, ForeignRate};
 use super::print::{Written, without_case};
+use dashu::base::BitTest;
+use dashu::rational::RBig;
 use palmistry_io::foreign::Budget;
 use palmistry_lang::{Code, Problem};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A value with more parts than these gets a name before it is written twice.
 const SHORT: usize = 40;
+
+/// Values of more bits are not kept: they are no flags.
+const LONGEST: usize = 1 << 14;
 
 /// A model without cases.
 pub(super) struct Uncased {
@@ -36,6 +41,12 @@ struct Writing<'b> {
     /// Definitions that were made, and are written above what comes next.
     above: Vec<(String, ForeignExpr)>,
     has_sign: bool,
+    /// What constants, and definitions made of them, are by the values of the file.
+    values: BTreeMap<String, RBig>,
+    /// Definitions that do not exist everywhere.
+    partial: BTreeSet<String>,
+    /// What was decided by the values of the file.
+    remarks: Vec<String>,
 }
 
 /// Writes out all cases of a model.
@@ -44,10 +55,24 @@ struct Writing<'b> {
 /// Cases that our language cannot say, and what becomes too large.
 pub(super) fn written_out(model: &ForeignModel, budget: &Budget) -> Result<Uncased, Problem> {
     let taken = model.all_names().into_iter().collect();
-    let mut writing = Writing { budget, taken, count: 0, above: Vec::new(), has_sign: false };
+    let given = |constant: &ForeignConstant| Some((constant.name.clone(), constant.value.clone()?));
+    let values = model.constants.iter().filter(|one| !model.varied.contains(&one.name)).filter_map(given);
+    let mut writing = Writing {
+        budget,
+        taken,
+        count: 0,
+        above: Vec::new(),
+        has_sign: false,
+        values: values.collect(),
+        partial: BTreeSet::new(),
+        remarks: Vec::new(),
+    };
     let mut found = model.without_formulas();
     for (name, value) in &model.definitions {
-        let value = writing.whole(value)?;
+        let part = writing.part(value)?;
+        writing.has_sign |= part.has_sign;
+        writing.note(name, &part);
+        let value = part.value;
         found.definitions.append(&mut writing.above);
         found.definitions.push((name.clone(), value));
     }
@@ -62,6 +87,7 @@ pub(super) fn written_out(model: &ForeignModel, budget: &Budget) -> Result<Uncas
         *value = value.as_ref().map(|value| writing.whole(value)).transpose()?;
     }
     found.definitions.append(&mut writing.above);
+    found.remarks.append(&mut writing.remarks);
     Ok(Uncased { model: found, has_sign: writing.has_sign })
 }
 
@@ -72,8 +98,59 @@ impl Writing<'_> {
         Ok(part.value)
     }
 
+    /// Keeps in mind what a definition is by the values of the file, and whether it exists everywhere.
+    fn note(&mut self, name: &str, part: &Part) {
+        if !part.is_total {
+            self.partial.insert(name.to_owned());
+        }
+        // a longer one is no flag
+        if part.size <= SHORT
+            && let Some(value) = part.value.exact(&|name| self.values.get(name).cloned())
+            && value.numerator().bit_len() + value.denominator().bit_len() <= LONGEST
+        {
+            self.values.insert(name.to_owned(), value);
+        }
+    }
+
+    /// Which value a case has whose sides are constants that are equal by the values of the file: `sign` has none there.
+    fn decided<'e>(&mut self, of: &'e ForeignExpr) -> Option<&'e ForeignExpr> {
+        let ForeignKind::Case { sides, order, values } = &of.kind else { return None };
+        if sides.0.size() + sides.1.size() > SHORT {
+            return None;
+        }
+        let value = |side: &ForeignExpr| side.exact(&|name| self.values.get(name).cloned());
+        if value(&sides.0)? != value(&sides.1)? {
+            return None;
+        }
+        let mut names = BTreeSet::new();
+        for side in [&sides.0, &sides.1] {
+            side.names(&mut |name, _| {
+                names.insert(name.to_owned());
+            });
+        }
+        if !names.is_empty() {
+            let list = names.into_iter().collect::<Vec<_>>().join(", ");
+            let remark =
+                format!("a case is decided by the values of the file, at which both sides are equal: {list}");
+            if !self.remarks.contains(&remark) {
+                self.remarks.push(remark);
+            }
+        }
+        Some(match order {
+            ForeignOrder::AtMost | ForeignOrder::AtLeast => &values.0,
+            ForeignOrder::Less | ForeignOrder::Greater => &values.1,
+        })
+    }
+
     fn part(&mut self, of: &ForeignExpr) -> Result<Part, Problem> {
         self.budget.nodes(1).map_err(|spent| super::too_much(&of.span, spent))?;
+        if let Some(value) = self.decided(of) {
+            return self.part(value);
+        }
+        if let ForeignKind::Name(name) = &of.kind {
+            let is_total = !self.partial.contains(name);
+            return Ok(Part { value: of.clone(), size: 1, is_total, has_sign: false });
+        }
         let mut parts = Vec::new();
         for inner in of.parts() {
             parts.push(self.part(inner)?);

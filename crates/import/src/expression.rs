@@ -175,6 +175,43 @@ impl ForeignExpr {
         }
     }
 
+    /// Calls `each` for every case in it, the outermost one first.
+    pub(super) fn cases(&mut self, each: &mut impl FnMut(&mut ForeignExpr)) {
+        if matches!(self.kind, ForeignKind::Case { .. }) {
+            each(self);
+        }
+        self.parts_mut().into_iter().for_each(|part| part.cases(each));
+    }
+
+    /// Its exact value, where it is made of numbers and of names that have one by sums, products and whole powers alone.
+    pub(super) fn exact(&self, of: &impl Fn(&str) -> Option<RBig>) -> Option<RBig> {
+        match &self.kind {
+            ForeignKind::Number(value) => Some(value.clone()),
+            ForeignKind::Name(name) => of(name),
+            ForeignKind::Sum(list) => list.iter().try_fold(RBig::ZERO, |sum, (subtracted, part)| {
+                let part = part.exact(of)?;
+                Some(if *subtracted { sum - part } else { sum + part })
+            }),
+            ForeignKind::Product(list) => list.iter().try_fold(RBig::ONE, |product, (divided, part)| {
+                let part = part.exact(of)?;
+                match divided {
+                    true if part == RBig::ZERO => None,
+                    true => Some(product / part),
+                    false => Some(product * part),
+                }
+            }),
+            // larger ones are no flags, and may be too large to write
+            ForeignKind::Power(base, exponent) => {
+                let exponent = exponent.as_number().filter(|value| value.is_int())?;
+                let exponent = isize::try_from(exponent.numerator().clone())
+                    .ok()
+                    .filter(|power| (0..=8).contains(power))?;
+                Some(base.exact(of)?.pow(exponent))
+            }
+            _ => None,
+        }
+    }
+
     fn parts_mut(&mut self) -> Vec<&mut ForeignExpr> {
         match &mut self.kind {
             ForeignKind::Number(_) | ForeignKind::Pi | ForeignKind::Name(_) => Vec::new(),

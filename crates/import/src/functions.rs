@@ -133,6 +133,20 @@ pub(super) fn is_function(name: &str) -> bool {
     FUNCTIONS.iter().any(|(own, ..)| *own == name) || NAMES.iter().any(|(own, _)| *own == name)
 }
 
+/// Whether a name is that of a function of one argument, as programs write it: in small letters, or with a capital in front. In capitals it may
+/// be any name.
+pub(super) fn takes_one(name: &str) -> bool {
+    if name.len() > 1 && name.chars().filter(|c| c.is_uppercase()).count() > 1 {
+        return false;
+    }
+    let name = name.to_ascii_lowercase();
+    match NAMES.iter().find(|(own, _)| *own == name) {
+        Some((_, Made::Ours(ours))) => FUNCTIONS.iter().any(|(own, least, _)| own == ours && *least == 1),
+        Some((_, made)) => matches!(made, Made::Of(_)),
+        None => FUNCTIONS.iter().any(|(own, least, _)| *own == name && *least == 1),
+    }
+}
+
 /// A function of another program, by its name in whichever case, of its arguments.
 pub(super) fn call(name: &str, mut arguments: Vec<ForeignExpr>, span: &Span) -> Result<ForeignExpr, Problem> {
     let small = name.to_ascii_lowercase();

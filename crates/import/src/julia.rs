@@ -1,8 +1,9 @@
 //! `@ODEmodel(...)` and `@DDSmodel(...)` of StructuralIdentifiability.jl.
 
 use super::expression::{ForeignExpr, Span};
+use super::functions::{is_function, takes_one};
 use super::model::{ForeignModel, ForeignOutput, ForeignRate};
-use super::script::{Dialect, Parser, Syntax, SyntaxKind, Token, TokenKind, meaning, tokens};
+use super::script::{Dialect, Parser, Syntax, SyntaxKind, Token, TokenKind, meaning, named_function, tokens};
 use palmistry_io::foreign::Budget;
 use palmistry_lang::{Code, Problem};
 use std::collections::BTreeSet;
@@ -20,14 +21,15 @@ pub(super) fn read(text: &str, which: Option<&str>, budget: &Budget) -> Result<F
     let (words, comments) = tokens(text, Dialect::Julia, budget)?;
     let found = models(&words);
     if found.is_empty() {
-        return super::toolkit::read(text, &words, &comments);
+        return super::toolkit::read(text, &words, &comments, which, budget);
     }
     let one = chosen(text, &found, which)?;
     let mut parser = Parser::new(&words, Dialect::Julia);
     parser.go_to(one.at + 2);
     let equations = parser.bracketed()?;
     let is_discrete = words[one.at + 1].text == "DDSmodel";
-    let mut model = of_equations(&equations, is_discrete, &one.span)?;
+    let functions = FileFunctions::of(&words);
+    let mut model = of_equations(&equations, is_discrete, &one.span, &functions)?;
     // what a name in the source says of a model is often no more than that it is one
     let says = |name: &&String| !["ode", "odes", "model", "sys", "system", "eqs"].contains(&name.as_str());
     model.title = one.name.as_ref().filter(says).cloned();
@@ -76,7 +78,14 @@ fn chosen<'a>(text: &str, found: &'a [Found], which: Option<&str>) -> Result<&'a
         None => Ok(&found[0]),
         Some(wanted) => {
             let by_number = wanted.parse::<usize>().ok().and_then(|number| found.get(number.checked_sub(1)?));
-            found.iter().find(|one| one.name.as_deref() == Some(wanted)).or(by_number).ok_or_else(|| {
+            let mut same = found.iter().filter(|one| one.name.as_deref() == Some(wanted));
+            let by_name = same.next();
+            if let Some(second) = same.next() {
+                let message = format!("the file has several models '{wanted}'");
+                return Err(Problem::new(Code::Foreign, &second.span, message, "another one")
+                    .help(format!("say which with --model NUMBER: {}", list())));
+            }
+            by_name.or(by_number).ok_or_else(|| {
                 Problem::new(
                     Code::Foreign,
                     &found[0].span,
@@ -120,13 +129,28 @@ fn left_side<'a>(syntax: &'a Syntax, is_discrete: bool) -> Option<(Left<'a>, &'a
     }
 }
 
-fn of_equations(equations: &[Syntax], is_discrete: bool, span: &Span) -> Result<ForeignModel, Problem> {
+fn of_equations(
+    equations: &[Syntax],
+    is_discrete: bool,
+    span: &Span,
+    functions: &FileFunctions,
+) -> Result<ForeignModel, Problem> {
     let form = if is_discrete { "x(t + 1) = ... and y(t) = ..." } else { "x'(t) = ... and y(t) = ..." };
     let mut sides = Vec::new();
     for equation in equations {
         let wrong = || {
-            Problem::new(Code::Foreign, &equation.span, "this is no equation of a model", "this")
-                .help(format!("a model has lines {form}"))
+            let (message, help) = match &equation.kind {
+                SyntaxKind::Equation(_, left, _) if is_second_derivative(left) => (
+                    "a second derivative is not read",
+                    "it needs a state of its own: x'(t) = v(t) and v'(t) = ...".to_owned(),
+                ),
+                SyntaxKind::Equation(_, left, _) if is_initial_value(left) => (
+                    "this is no equation of a model",
+                    "an initial condition is none of the equations: leave it out".to_owned(),
+                ),
+                _ => ("this is no equation of a model", format!("a model has lines {form}")),
+            };
+            Problem::new(Code::Foreign, &equation.span, message, "this").help(help)
         };
         let SyntaxKind::Equation("=", left, right) = &equation.kind else { return Err(wrong()) };
         sides.push((left_side(left, is_discrete).ok_or_else(wrong)?, left.as_ref(), right.as_ref()));
@@ -163,7 +187,7 @@ fn of_equations(equations: &[Syntax], is_discrete: bool, span: &Span) -> Result<
     let mut model = ForeignModel { is_discrete, ..ForeignModel::default() };
     let mut inputs = Inputs::default();
     for ((left, _), place, right) in &sides {
-        let value = right_side(right, time, &measured, &moved, &mut inputs)?;
+        let value = right_side(right, time, &measured, &moved, &mut inputs, functions)?;
         match left {
             Left::State(name) => {
                 model.states.push(ForeignRate {
@@ -186,8 +210,19 @@ fn right_side(
     measured: &BTreeSet<&str>,
     moved: &BTreeSet<&str>,
     inputs: &mut Inputs,
+    functions: &FileFunctions,
 ) -> Result<ForeignExpr, Problem> {
-    meaning(syntax, &mut |part| match &part.kind {
+    let is_known = |name: &str| moved.contains(name) || measured.contains(name);
+    meaning(syntax, &mut |part| {
+        match &part.kind {
+        // what is called so in Julia is a number there, and any symbol here
+        SyntaxKind::Name(name) if NUMBERS.contains(&name.as_str()) => Some(Err(Problem::new(
+            Code::Foreign,
+            &part.span,
+            format!("'{name}' is a number in Julia, and a parameter by that name for @ODEmodel"),
+            "this",
+        )
+        .help("for the number write 4*atan(1) or exp(1); give a parameter another name; there are no complex numbers"))),
         SyntaxKind::Name(name) if name == time => Some(Err(Problem::new(
             Code::Foreign,
             &part.span,
@@ -204,7 +239,13 @@ fn right_side(
         .help("write what is measured in its place"))),
         SyntaxKind::Name(name) => Some(Ok(ForeignExpr::name(name, &part.span))),
         SyntaxKind::Call(callee, arguments) => match (&callee.kind, arguments.as_slice()) {
-            (SyntaxKind::Name(name), [only]) if only.as_name() == Some(time) => {
+            // sin(t) is a function, and no signal
+            (SyntaxKind::Name(name), [only])
+                if only.as_name() == Some(time) && (is_known(name) || !takes_one(name)) =>
+            {
+                if let Err(problem) = functions.refuse(part) {
+                    return Some(Err(problem));
+                }
                 if measured.contains(name.as_str()) {
                     return Some(Err(Problem::new(
                         Code::Foreign,
@@ -219,8 +260,118 @@ fn right_side(
                 }
                 Some(Ok(ForeignExpr::name(name, &part.span)))
             }
-            _ => None,
+            (SyntaxKind::Name(name), [only]) if is_known(name) || !is_function(name) && mentions(only, time) => {
+                let (message, help) = match mentions(only, time) {
+                    true => (
+                        format!("'{name}' is asked for at another time: delays are not read"),
+                        "a system with delays has no finite state".to_owned(),
+                    ),
+                    false => (
+                        format!("'{name}' is a function of time, and something else stands in its bracket"),
+                        format!("a product is written with '*': {name}({time})*(...)"),
+                    ),
+                };
+                Some(Err(Problem::new(Code::Foreign, &part.span, message, "this").help(help)))
+            }
+            _ => functions.refuse(part).err().map(Err),
         },
         _ => None,
+    }
     })
 }
+
+/// Names of numbers in Julia.
+const NUMBERS: [&str; 4] = ["π", "pi", "ℯ", "im"];
+
+/// Whether time stands in an expression, otherwise than in `x(t)`.
+fn mentions(syntax: &Syntax, time: &str) -> bool {
+    match &syntax.kind {
+        SyntaxKind::Name(name) => name == time,
+        SyntaxKind::Sum(list) | SyntaxKind::Product(list) => list.iter().any(|(_, one)| mentions(one, time)),
+        _ => false,
+    }
+}
+
+/// `x''(t)`
+fn is_second_derivative(left: &Syntax) -> bool {
+    let SyntaxKind::Call(callee, _) = &left.kind else { return false };
+    matches!(&callee.kind, SyntaxKind::Prime(inner) if matches!(inner.kind, SyntaxKind::Prime(_)))
+}
+
+/// `x(0)`
+fn is_initial_value(left: &Syntax) -> bool {
+    matches!(&left.kind, SyntaxKind::Call(_, arguments)
+        if matches!(arguments.as_slice(), [Syntax { kind: SyntaxKind::Number(_), .. }]))
+}
+
+/// The functions that a file defines itself: what they are is not read, whatever they are called.
+pub(super) struct FileFunctions(BTreeSet<String>);
+
+impl FileFunctions {
+    /// Those of `f(x) = ...`, `f = x -> ...`, `function f(x)` and `@register_symbolic f(x)`, outside of all brackets.
+    pub fn of(words: &[Token]) -> FileFunctions {
+        let mut found = BTreeSet::new();
+        let mut depth = 0_usize;
+        for (at, word) in words.iter().enumerate() {
+            let next = |by: usize| &words[(at + by).min(words.len() - 1)];
+            match word.kind {
+                TokenKind::Sign("(" | "[" | "{") => depth += 1,
+                TokenKind::Sign(")" | "]" | "}") => depth = depth.saturating_sub(1),
+                TokenKind::Name if depth == 0 => {
+                    let is_named = at > 0
+                        && (words[at - 1].is_word("function")
+                            || ["register", "register_symbolic"]
+                                .iter()
+                                .any(|name| words[at - 1].is_word(name)));
+                    let begins =
+                        at == 0 || word.newline || words[at - 1].is(";") || words[at - 1].is_word("const");
+                    let is_lambda = next(1).is("=")
+                        && (next(3).is("->")
+                            || next(2).is("(")
+                                && closed(words, at + 2).is_some_and(|end| words[end].is("->")));
+                    let is_defined = next(1).is("(")
+                        && !next(1).spaced
+                        && closed(words, at + 1).is_some_and(|end| words[end].is("="));
+                    if is_named && next(1).is("(") || begins && (is_lambda || is_defined) {
+                        found.insert(word.text.clone());
+                    }
+                }
+                _ => {}
+            }
+        }
+        FileFunctions(found)
+    }
+
+    /// Refuses a call of one of them.
+    pub fn refuse(&self, part: &Syntax) -> Result<(), Problem> {
+        match named_function(part) {
+            Some((name, _)) if self.0.contains(name) => {
+                let message = format!("'{name}' is a function that the file defines: it is not read");
+                Err(Problem::new(Code::Foreign, &part.span, message, "this call")
+                    .help("write its formula in its place"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Where the bracket that begins at a token is behind its end, if it ends soon.
+fn closed(words: &[Token], begin: usize) -> Option<usize> {
+    let mut depth = 0_usize;
+    for (at, word) in words.iter().enumerate().skip(begin).take(LONGEST_HEAD) {
+        match word.kind {
+            TokenKind::Sign("(" | "[" | "{") => depth += 1,
+            TokenKind::Sign(")" | "]" | "}") => {
+                depth = depth.checked_sub(1)?;
+                if depth == 0 {
+                    return (at + 1 < words.len()).then_some(at + 1);
+                }
+            }
+            _ => {}
+        }
+    }
+    None
+}
+
+/// More tokens than these have no arguments of a function.
+const LONGEST_HEAD: usize = 400;

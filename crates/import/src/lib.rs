@@ -185,7 +185,8 @@ fn read(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedMod
     let text = with_plain_line_ends(text);
     let format = question.format.unwrap_or_else(|| ForeignFormat::of(name, &text));
     let located = |problem: Problem| problem.locate(name, &text);
-    let roles = PrintedRoles { states: question.states.clone(), outputs: question.outputs.clone() };
+    let inputs = question.known_inputs.iter().chain(&question.unknown_inputs).cloned().collect();
+    let roles = PrintedRoles { states: question.states.clone(), outputs: question.outputs.clone(), inputs };
     let which = question.model.as_deref();
     let budget = Budget::new(ALLOWANCE);
     let mut model = match format {
@@ -196,6 +197,21 @@ fn read(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedMod
         ForeignFormat::Formulas => formulas::read(&text, &roles, &budget),
     }
     .map_err(located)?;
+    // the other readers look for it themselves
+    if let Some(wanted) = which.filter(|wanted| *wanted != "1" && model.title.as_deref() != Some(wanted))
+        && matches!(format, ForeignFormat::Sbml | ForeignFormat::Formulas)
+    {
+        let problem = Problem::new(
+            Code::Foreign,
+            &(0..text.len().min(1)),
+            format!("the file has no model '{wanted}'"),
+            "the file",
+        );
+        return Err(located(problem.help("it has one model: leave --model out")));
+    }
+    if question.outputs.is_empty() {
+        model.look_at_inputs().map_err(located)?;
+    }
     let asked = |why: String| {
         located(
             Problem::new(Code::Foreign, &(0..text.len().min(1)), why, "the file")

@@ -1,6 +1,6 @@
 //! A model as a foreign file has it, in its own names, whatever format it was written in.
 
-use super::expression::{ForeignExpr, Span};
+use super::expression::{ForeignExpr, ForeignKind, Span};
 use dashu::rational::RBig;
 use palmistry_lang::{Code, Problem, nearest};
 use std::collections::{BTreeMap, BTreeSet};
@@ -57,6 +57,8 @@ pub struct ForeignModel {
     pub initial_values: Vec<(String, Option<ForeignExpr>)>,
     /// The state that is time, where the equations name it: it is measured whatever else is.
     pub clock: Option<String>,
+    /// Constants that have several values, one in each experiment.
+    pub varied: BTreeSet<String>,
     /// What a reader of the new file has to know, a sentence each.
     pub remarks: Vec<String>,
 }
@@ -243,6 +245,46 @@ impl ForeignModel {
         Ok(())
     }
 
+    /// Looks at inputs that only outputs have: one that is an output by itself may be a slip of the pen.
+    ///
+    /// # Errors
+    /// An output that is nothing but a signal without an equation that no rate has.
+    pub(super) fn look_at_inputs(&mut self) -> Result<(), Problem> {
+        let mut used: BTreeSet<String> = BTreeSet::new();
+        let mut look = |value: &ForeignExpr| {
+            value.names(&mut |name, _| {
+                used.insert(name.to_owned());
+            });
+        };
+        self.states.iter().for_each(|state| look(&state.rate));
+        self.definitions.iter().for_each(|(_, value)| look(value));
+        let inputs: BTreeSet<&String> = self.known_inputs.iter().chain(&self.unknown_inputs).collect();
+        let mut alone = Vec::new();
+        for output in &self.outputs {
+            if let ForeignKind::Name(name) = &output.value.kind
+                && inputs.contains(name)
+            {
+                if !used.contains(name) {
+                    let states = self.states.iter().map(|state| state.name.as_str());
+                    let help = match nearest(name, states) {
+                        Some(other) => format!("perhaps '{other}' is meant; an output is made of states"),
+                        None => "an output is made of states: write its formula".to_owned(),
+                    };
+                    let message =
+                        format!("the output is '{name}', which has no equation and stands in no rate");
+                    return Err(
+                        Problem::new(Code::Foreign, &output.value.span, message, "this output").help(help)
+                    );
+                }
+                alone.push(name.clone());
+            }
+        }
+        if !alone.is_empty() {
+            self.remarks.push(format!("outputs that are inputs, and measure no state: {}", alone.join(", ")));
+        }
+        Ok(())
+    }
+
     /// All of it but definitions and rates.
     pub(super) fn without_formulas(&self) -> ForeignModel {
         ForeignModel {
@@ -257,6 +299,7 @@ impl ForeignModel {
             unknown_inputs: self.unknown_inputs.clone(),
             initial_values: self.initial_values.clone(),
             clock: self.clock.clone(),
+            varied: self.varied.clone(),
             remarks: self.remarks.clone(),
         }
     }

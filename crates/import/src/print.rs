@@ -37,6 +37,8 @@ fn written(expression: &ForeignExpr, names: &ForeignNames) -> Result<(String, Bi
         ForeignKind::Number(value) => number(value),
         ForeignKind::Pi => ("pi".to_owned(), Binding::Primary),
         ForeignKind::Name(name) => (names.ours(name).to_owned(), Binding::Primary),
+        // a sum of one is that one
+        ForeignKind::Sum(terms) if matches!(terms.as_slice(), [(false, _)]) => written(&terms[0].1, names)?,
         ForeignKind::Sum(terms) => {
             let mut out = String::new();
             for (at, (subtracted, term)) in terms.iter().enumerate() {
@@ -97,9 +99,14 @@ fn written(expression: &ForeignExpr, names: &ForeignNames) -> Result<(String, Bi
         }
         ForeignKind::Power(base, exponent) => {
             let (base, holds) = written(base, names)?;
-            let base = if holds < Binding::Primary { format!("({base})") } else { base };
+            // a power of ten in a number is not told from a name behind a number there
+            let is_plain = |text: &str, holds| {
+                holds == Binding::Primary
+                    && !(text.starts_with(|c: char| c.is_ascii_digit()) && text.contains('e'))
+            };
+            let base = if is_plain(&base, holds) { base } else { format!("({base})") };
             let (exponent, holds) = written(exponent, names)?;
-            let exponent = if holds < Binding::Primary { format!("({exponent})") } else { exponent };
+            let exponent = if is_plain(&exponent, holds) { exponent } else { format!("({exponent})") };
             (format!("{base}^{exponent}"), Binding::Power)
         }
         ForeignKind::Call(name, arguments) => {
@@ -171,7 +178,7 @@ fn decimal(value: &RBig) -> Option<String> {
 }
 
 /// Whether two expressions are written alike.
-fn same(one: &ForeignExpr, other: &ForeignExpr) -> bool {
+pub(super) fn same(one: &ForeignExpr, other: &ForeignExpr) -> bool {
     let parts = |list: &[(bool, ForeignExpr)], others: &[(bool, ForeignExpr)]| {
         list.len() == others.len() && list.iter().zip(others).all(|((a, x), (b, y))| a == b && same(x, y))
     };

@@ -1,6 +1,6 @@
 //! Lines such as `states: x, y` that say what formulas do not.
 
-use super::pieces::symbol;
+use super::pieces::{signal, symbol};
 use crate::expression::Span;
 use crate::script::{Dialect, Parser, Syntax, tokens};
 use palmistry_io::foreign::Budget;
@@ -65,14 +65,17 @@ pub(super) fn expressions_in(text: &str, span: &Span, budget: &Budget) -> Result
     Ok(list)
 }
 
-pub(super) fn names_in(text: &str, span: Option<&Span>, budget: &Budget) -> Result<Vec<String>, Problem> {
+/// A name in a header, and where it stands.
+pub(super) type Listed = (String, Span);
+
+pub(super) fn names_in(text: &str, span: Option<&Span>, budget: &Budget) -> Result<Vec<Listed>, Problem> {
     let Some(span) = span else { return Ok(Vec::new()) };
     let list = expressions_in(text, span, budget)?;
     list.iter()
         .map(|one| {
-            symbol(one).ok_or_else(|| {
+            symbol(one).or_else(|| signal(one)).map(|name| (name, one.span.clone())).ok_or_else(|| {
                 Problem::new(Code::Foreign, &one.span, "this is no name", "this")
-                    .help("names with commas between them")
+                    .help("names with commas between them; a value is a line of its own, as in k = 2")
             })
         })
         .collect()

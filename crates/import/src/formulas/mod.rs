@@ -13,13 +13,13 @@ mod headers;
 mod pieces;
 
 use crate::expression::{ForeignExpr, ForeignKind, Span};
-use crate::functions::constant;
+use crate::functions::{constant, takes_one};
 use crate::model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate};
-use crate::script::{Dialect, Parser, Syntax, SyntaxKind, Token, meaning, named_function, tokens};
-use headers::{expressions_in, names_in, without_headers};
+use crate::script::{Dialect, Parser, Syntax, SyntaxKind, Token, TokenKind, meaning, named_function, tokens};
+use headers::{Listed, expressions_in, names_in, without_headers};
 use palmistry_io::foreign::Budget;
-use palmistry_lang::{Code, Problem};
-use pieces::{TIME, differentiated, is_equation, symbol, vector};
+use palmistry_lang::{Code, Problem, nearest};
+use pieces::{TIME, differentiated, is_equation, is_higher_derivative, symbol, vector};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Roles of names that the text does not give.
@@ -29,6 +29,8 @@ pub struct PrintedRoles {
     pub states: Vec<String>,
     /// What is measured: names, or expressions.
     pub outputs: Vec<String>,
+    /// Functions of time that are inputs.
+    pub inputs: Vec<String>,
 }
 
 /// Reads formulas.
@@ -37,11 +39,19 @@ pub(crate) fn read(text: &str, roles: &PrintedRoles, budget: &Budget) -> Result<
     let (words, comments) = tokens(&body, Dialect::Printed, budget)?;
     let mut reading = Reading::new(budget);
     for (header, list) in [("states", &mut reading.states), ("parameters", &mut reading.parameters)] {
-        list.extend(names_in(text, headers.get(header), budget)?);
+        let names = names_in(text, headers.get(header), budget)?;
+        list.extend(names.iter().map(|(name, _)| name.clone()));
+        reading.listed.extend(names.into_iter().filter(|_| header != "states"));
     }
-    reading.known = names_in(text, headers.get("known"), budget)?;
-    reading.inputs = names_in(text, headers.get("inputs"), budget)?;
-    reading.unknown_inputs = names_in(text, headers.get("unknown inputs"), budget)?;
+    for (header, list) in [
+        ("known", &mut reading.known),
+        ("inputs", &mut reading.inputs),
+        ("unknown inputs", &mut reading.unknown_inputs),
+    ] {
+        let names = names_in(text, headers.get(header), budget)?;
+        list.extend(names.iter().map(|(name, _)| name.clone()));
+        reading.listed.extend(names);
+    }
     if !roles.states.is_empty() {
         reading.states = roles.states.clone();
     }
@@ -54,27 +64,50 @@ pub(crate) fn read(text: &str, roles: &PrintedRoles, budget: &Budget) -> Result<
             return Err(parser.unexpected("the end of the line"));
         }
     }
+    reading.refuse_signals(roles)?;
+    let mut equations = reading.names_of_equations(roles);
     if let Some(span) = headers.get("outputs") {
+        if !reading.outputs.is_empty() {
+            let message = "the outputs are given twice: by a vector, and here";
+            return Err(
+                Problem::new(Code::Foreign, span, message, "the second time").help("take one of the two out")
+            );
+        }
         reading.outputs = expressions_in(text, span, budget)?
             .iter()
             .map(|one| reading.value(one))
             .collect::<Result<_, _>>()?;
+        for output in &reading.outputs {
+            look_for_unknown(output, &equations)?;
+        }
     }
     for wanted in &roles.outputs {
         let (words, _) = tokens(wanted, Dialect::Printed, budget)?;
         let mut parser = Parser::new(&words, Dialect::Printed);
         let one = parser.expression().and_then(|one| match parser.at_end() {
-            true => reading.value(&one),
+            true => reading.value(&one).and_then(|one| look_for_unknown(&one, &equations).map(|()| one)),
             false => Err(parser.unexpected("one expression")),
         });
         match one {
             Ok(one) => reading.asked_outputs.push(ForeignExpr { span: 0..0, ..one }),
             Err(why) => {
                 let message = format!("the output '{wanted}' cannot be read: {}", why.message);
-                return Err(Problem::new(Code::Foreign, &(0..text.len().min(1)), message, "the file")
-                    .help("an output is a name or an expression of the file's names"));
+                let help =
+                    why.help.as_deref().unwrap_or("an output is a name or an expression of the file's names");
+                return Err(
+                    Problem::new(Code::Foreign, &(0..text.len().min(1)), message, "the file").help(help)
+                );
             }
         }
+    }
+    for output in reading.outputs.iter().chain(&reading.asked_outputs) {
+        output.names(&mut |name, _| {
+            equations.used.insert(name.to_owned());
+        });
+    }
+    if let Some((name, span)) = reading.listed.iter().find(|(name, _)| !equations.used.contains(name)) {
+        let message = format!("'{name}' stands in no equation and in no output");
+        return Err(Problem::new(Code::Foreign, span, message, "this name").help(equations.advice(name)));
     }
     let mut model = reading.model(text)?;
     let header = |name: &str| headers.get(name).map(|span| text[span.clone()].trim().to_owned());
@@ -82,6 +115,44 @@ pub(crate) fn read(text: &str, roles: &PrintedRoles, budget: &Budget) -> Result<
     let begin = words.first().map_or(0, |word| word.span.start);
     model.source = header("source").or_else(|| crate::heading(text, &comments, begin));
     Ok(model)
+}
+
+/// The names that a file's equations have.
+struct EquationNames {
+    /// Those that stand in rates, definitions and vectors.
+    used: BTreeSet<String>,
+    /// Those, and what lists say besides.
+    all: BTreeSet<String>,
+}
+
+impl EquationNames {
+    /// What to do about a name that they do not have.
+    fn advice(&self, name: &str) -> String {
+        match nearest(name, self.used.iter().map(String::as_str).filter(|own| *own != name)) {
+            Some(other) => format!("perhaps '{other}' is meant"),
+            None => {
+                let own = self.used.iter().map(String::as_str).filter(|own| !own.starts_with('@'));
+                format!("the equations have {}", own.take(40).collect::<Vec<_>>().join(", "))
+            }
+        }
+    }
+}
+
+/// Refuses an output that names what no equation has and no list.
+fn look_for_unknown(output: &ForeignExpr, equations: &EquationNames) -> Result<(), Problem> {
+    let mut bad = None;
+    output.names(&mut |name, span| {
+        if bad.is_none() && !equations.all.contains(name) && name != TIME {
+            bad = Some((name.to_owned(), span.clone()));
+        }
+    });
+    let Some((name, span)) = bad else { return Ok(()) };
+    let message = format!("'{name}' stands in no equation");
+    let help = format!(
+        "{}; a parameter that only outputs have is named in a line 'parameters: {name}'",
+        equations.advice(&name)
+    );
+    Err(Problem::new(Code::Foreign, &span, message, "this name").help(help))
 }
 
 struct Reading<'b> {
@@ -98,6 +169,10 @@ struct Reading<'b> {
     asked_outputs: Vec<ForeignExpr>,
     /// Names that are written as functions of time, or assigned to.
     declared: BTreeSet<String>,
+    /// Names that are written as functions of time, where they are met first.
+    signals: BTreeMap<String, Span>,
+    /// Names in lists of parameters and inputs, with their places.
+    listed: Vec<Listed>,
     /// What CasADi's `@1` are in this line: names of definitions, or conditions themselves.
     shared: BTreeMap<String, ForeignExpr>,
     lines: usize,
@@ -121,6 +196,8 @@ impl<'b> Reading<'b> {
             outputs: Vec::new(),
             asked_outputs: Vec::new(),
             declared: BTreeSet::new(),
+            signals: BTreeMap::new(),
+            listed: Vec::new(),
             shared: BTreeMap::new(),
             lines: 0,
             vectors: 0,
@@ -130,9 +207,43 @@ impl<'b> Reading<'b> {
     }
 
     fn look_for_names(&mut self, words: &[Token]) {
-        for three in words.windows(4) {
-            if three[1].is("(") && three[2].is_word(TIME) && three[3].is(")") {
-                self.declared.insert(three[0].text.clone());
+        let mut signal = |name: &str, span: &Span| {
+            self.declared.insert(name.to_owned());
+            self.signals.entry(name.to_owned()).or_insert_with(|| span.clone());
+        };
+        for four in words.windows(4) {
+            // sin(t) is a function of time that everybody knows
+            let is_signal = four[0].kind == TokenKind::Name
+                && four[1].is("(")
+                && four[2].is_word(TIME)
+                && four[3].is(")")
+                && !takes_one(&four[0].text);
+            if is_signal {
+                signal(&four[0].text, &four[0].span);
+            }
+        }
+        // Function('x')(Symbol('t'))
+        for eight in words.windows(8) {
+            let is_call = eight[1].is("(") && eight[3].is(")") && eight[4].is("(") && eight[6].is("(");
+            if let (TokenKind::Text(name), TokenKind::Text(time)) = (&eight[2].kind, &eight[7].kind)
+                && is_call
+                && eight[0].is_word("Function")
+                && eight[5].is_word("Symbol")
+                && time == TIME
+            {
+                signal(name, &eight[2].span);
+            }
+        }
+        for three in words.windows(3) {
+            let is_rate = three[0].is_word("Derivative") || three[0].is_word("diff");
+            if is_rate && three[1].is("(") && three[2].kind == TokenKind::Name {
+                self.declared.insert(three[2].text.clone());
+            }
+            if (three[0].is("{") || three[0].is(",")) && three[2].is(":") {
+                self.declared.insert(three[1].text.clone());
+            }
+            if three[1].is("/") && three[2].is_word("dt") {
+                self.declared.extend(three[0].text.strip_prefix('d').map(str::to_owned));
             }
         }
         for two in words.windows(2) {
@@ -142,6 +253,42 @@ impl<'b> Reading<'b> {
         }
         let headers = [&self.states, &self.parameters, &self.known, &self.inputs, &self.unknown_inputs];
         self.declared.extend(headers.into_iter().flatten().cloned());
+    }
+
+    /// Refuses functions of time of which nothing says what they are.
+    fn refuse_signals(&self, roles: &PrintedRoles) -> Result<(), Problem> {
+        let lists =
+            [&self.states, &self.parameters, &self.known, &self.inputs, &self.unknown_inputs, &roles.inputs];
+        let is_said = |name: &String| {
+            self.rated.contains(name)
+                || self.defined.contains(name)
+                || lists.iter().any(|list| list.contains(name))
+        };
+        match self.signals.iter().filter(|(name, _)| !is_said(name)).min_by_key(|(_, span)| span.start) {
+            Some((name, span)) => {
+                let message = format!("'{name}' is a function of time, and has no equation");
+                Err(Problem::new(Code::Foreign, span, message, "this").help(format!(
+                    "say what it is in a line 'inputs: {name}', or 'unknown inputs: {name}'; a constant is written {name}"
+                )))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn names_of_equations(&self, roles: &PrintedRoles) -> EquationNames {
+        let mut used: BTreeSet<String> = self.rated.union(&self.defined).cloned().collect();
+        let mut look = |value: &ForeignExpr| {
+            value.names(&mut |name, _| {
+                used.insert(name.to_owned());
+            });
+        };
+        self.rates.iter().for_each(|rate| look(&rate.rate));
+        self.definitions.iter().for_each(|(_, value)| look(value));
+        self.outputs.iter().for_each(look);
+        let mut all = used.clone();
+        all.extend(self.listed.iter().map(|(name, _)| name.clone()));
+        all.extend(roles.inputs.iter().cloned());
+        EquationNames { used, all }
     }
 
     fn line(&mut self, parser: &mut Parser<'_>) -> Result<(), Problem> {
@@ -207,7 +354,14 @@ impl<'b> Reading<'b> {
         if let Some(list) = vector(right) {
             return match name.as_str() {
                 "f" | "rhs" | "ode" | "xdot" | "dx" | "dxdt" => self.all_rates(&list, &right.span),
-                "h" | "y" | "outputs" | "g" => self.all_outputs(&list),
+                "h" | "y" | "outputs" if !self.outputs.is_empty() => Err(Problem::new(
+                    Code::Foreign,
+                    &left.span,
+                    "the outputs are given twice",
+                    "the second time",
+                )
+                .help("put all of them into one vector")),
+                "h" | "y" | "outputs" => self.all_outputs(&list),
                 "x" | "states" if self.states.is_empty() => {
                     let names = list.iter().map(|one| symbol(one).ok_or_else(|| no_left(one)));
                     self.states = names.collect::<Result<_, _>>()?;
@@ -296,6 +450,14 @@ impl<'b> Reading<'b> {
 
     fn special(&self, part: &Syntax) -> Option<Result<ForeignExpr, Problem>> {
         let span = &part.span;
+        if let SyntaxKind::Power(base, _) = &part.kind
+            && base.as_name() == Some("e")
+            && !self.declared.contains("e")
+        {
+            let message = "'e' may be Euler's number or a name";
+            return Some(Err(Problem::new(Code::Foreign, &base.span, message, "this")
+                .help("write exp(...), or name it in a line such as 'parameters: e'")));
+        }
         if let Some(name) = symbol(part) {
             if let Some(shared) = self.shared.get(&name) {
                 let paid = self.budget.nodes(shared.size());
@@ -310,6 +472,14 @@ impl<'b> Reading<'b> {
                 "E" => missing(
                     "'E' may be Euler's number or a name",
                     "write exp(1), or name it in a line such as 'parameters: E'",
+                ),
+                "I" => missing(
+                    "'I' may be the imaginary unit or a name",
+                    "there are no complex numbers; name it in a line such as 'parameters: I'",
+                ),
+                "EulerGamma" | "Catalan" | "GoldenRatio" | "TribonacciConstant" => missing(
+                    &format!("'{name}' is a number in SymPy"),
+                    "write its digits, or name it in a line such as 'known: c'",
                 ),
                 "oo" | "zoo" | "nan" | "inf" | "True" | "False" => {
                     missing(&format!("'{name}' is no number"), "write what is meant")
@@ -341,6 +511,26 @@ impl<'b> Reading<'b> {
                 Err(Problem::new(Code::Foreign, span, "a derivative stands in an expression", "this")
                     .help("put its equation in its place: only states may be differentiated, on the left"))
             }
+            // of a name that is no function: a delay, or a product
+            (_, [argument])
+                if matches!(&part.kind, SyntaxKind::Call(callee, _) if callee.as_name().is_some())
+                    && self.declared.contains(name)
+                    && !takes_one(name) =>
+            {
+                let mut has_time = false;
+                argument.names(&mut |name| has_time |= name == TIME);
+                let (message, help) = match has_time {
+                    true => (
+                        format!("'{name}' is asked for at another time: delays are not read"),
+                        "a system with delays has no finite state".to_owned(),
+                    ),
+                    false => (
+                        format!("'{name}' is no function, and a bracket stands behind it"),
+                        format!("a product is written with '*': {name}*(...)"),
+                    ),
+                };
+                Err(Problem::new(Code::Foreign, span, message, "this").help(help))
+            }
             _ => return None,
         })
     }
@@ -353,6 +543,28 @@ impl<'b> Reading<'b> {
             unknown_inputs: self.unknown_inputs,
             ..ForeignModel::default()
         };
+        if let Some((name, value)) = model.definitions.iter().find_map(|(name, value)| {
+            let stem = name.strip_suffix("dot").or_else(|| name.strip_prefix('d'))?;
+            let stem = stem.trim_end_matches('_').to_owned();
+            (model.states.is_empty() && !stem.is_empty()).then_some((stem, value))
+        }) {
+            return Err(Problem::new(
+                Code::Foreign,
+                &value.span,
+                "the file has no rates, and this may be one",
+                "this",
+            )
+            .help(format!("a rate is written {name}' = ... or d{name}/dt = ...")));
+        }
+        if model.states.is_empty() && text.trim().is_empty() {
+            return Err(Problem::new(
+                Code::Foreign,
+                &(0..text.len().min(1)),
+                "the file is empty",
+                "the file",
+            )
+            .help("a rate is x' = e, a line each"));
+        }
         if model.states.is_empty() {
             return Err(Problem::new(Code::Foreign, &(0..text.len().min(1)), "the file has no rates", "the file")
                 .help("a rate is x' = e, dx/dt = e or Eq(Derivative(x(t), t), e); a vector of rates needs 'states: x, y'"));
@@ -391,15 +603,59 @@ impl<'b> Reading<'b> {
         model.constants.extend(self.known.iter().map(|name| constant(name, false)));
         let names = model.all_names();
         let is_time = !names.iter().any(|name| name == TIME);
+        let listed = model.constants.len();
         model.declare_others(self.parameters.is_empty());
         let before = model.constants.len();
         model.constants.retain(|constant| !is_time || constant.name != TIME);
         if model.constants.len() < before {
             model.add_clock(TIME);
         }
+        look_at_others(&mut model, listed, self.parameters.is_empty())?;
         Ok(model)
     }
 }
+
+/// Says what is taken to be what of the names that nothing declares, and refuses those that look like functions of states.
+fn look_at_others(model: &mut ForeignModel, listed: usize, are_unknown: bool) -> Result<(), Problem> {
+    let others: Vec<String> = model.constants[listed.min(model.constants.len())..]
+        .iter()
+        .map(|constant| constant.name.clone())
+        .collect();
+    for name in &others {
+        let state = FUNCTIONS_OF_STATES.iter().find_map(|function| {
+            let rest = name.strip_prefix(function)?;
+            model.states.iter().find(|state| state.name == rest).map(|state| (*function, state.name.clone()))
+        });
+        if let Some((function, state)) = state {
+            let mut place = 0..0;
+            let mut look = |value: &ForeignExpr| {
+                value.names(&mut |own, span| {
+                    if own == name && place.is_empty() {
+                        place = span.clone();
+                    }
+                });
+            };
+            model.states.iter().for_each(|state| look(&state.rate));
+            model.definitions.iter().for_each(|(_, value)| look(value));
+            model.outputs.iter().for_each(|output| look(&output.value));
+            let message = format!("'{name}' may be a function of '{state}' or a name");
+            return Err(Problem::new(Code::Foreign, &place, message, "this").help(format!(
+                "write {function}({state}), or name it in a line such as 'parameters: {name}'"
+            )));
+        }
+        let small = name.to_lowercase();
+        if let Some(state) = model.states.iter().find(|state| state.name.to_lowercase() == small) {
+            model.remarks.push(format!("'{name}' is taken to be a parameter: the state is '{}'", state.name));
+        }
+    }
+    if !are_unknown && !others.is_empty() {
+        model.remarks.push(format!("known constants, not in the list of parameters: {}", others.join(", ")));
+    }
+    Ok(())
+}
+
+/// Functions whose brackets are left out most often.
+const FUNCTIONS_OF_STATES: [&str; 9] = ["sin", "cos", "tan", "exp", "log", "ln", "sqrt", "sinh", "cosh"];
 
 /// Definitions that nothing uses are what is measured.
 fn outputs_by_use(model: &mut ForeignModel) {
@@ -424,6 +680,21 @@ fn outputs_by_use(model: &mut ForeignModel) {
 }
 
 fn no_left(syntax: &Syntax) -> Problem {
+    if is_higher_derivative(syntax) {
+        return Problem::new(Code::Foreign, &syntax.span, "a second derivative is not read", "this")
+            .help("it needs a state of its own: x' = v and v' = ...");
+    }
+    if let SyntaxKind::Call(_, arguments) = &syntax.kind
+        && matches!(arguments.as_slice(), [Syntax { kind: SyntaxKind::Number(_), .. }])
+    {
+        return Problem::new(
+            Code::Foreign,
+            &syntax.span,
+            "an initial condition is none of the equations",
+            "this",
+        )
+        .help("leave it out: initial conditions are unknown unless a proof file says otherwise");
+    }
     Problem::new(Code::Foreign, &syntax.span, "this is no name and no derivative of one", "this")
         .help("an equation has x', dx/dt, Derivative(x(t), t) or a name on its left")
 }

@@ -1,9 +1,17 @@
 //! Names, derivatives, vectors and equations, however they are printed.
 
+use crate::functions::takes_one;
 use crate::script::{Syntax, SyntaxKind, named_function};
 
 /// The name of time where nothing is called so.
 pub(super) const TIME: &str = "t";
+
+/// The name of `x(t)`, even where a function is called so.
+pub(super) fn signal(syntax: &Syntax) -> Option<String> {
+    let SyntaxKind::Call(callee, arguments) = &syntax.kind else { return None };
+    let [time] = arguments.as_slice() else { return None };
+    symbol(time).filter(|time| time == TIME).and_then(|_| callee.as_name().map(str::to_owned))
+}
 
 /// The name of `x`, `x(t)`, `x[1]`, `Symbol('x')` or `Function('x')(Symbol('t'))`.
 pub(super) fn symbol(syntax: &Syntax) -> Option<String> {
@@ -28,7 +36,8 @@ pub(super) fn symbol(syntax: &Syntax) -> Option<String> {
             let [time] = arguments.as_slice() else { return None };
             let is_time = symbol(time).is_some_and(|time| time == TIME);
             match &callee.kind {
-                SyntaxKind::Name(name) if is_time => Some(name.clone()),
+                // sin(t) is a function of time that everybody knows
+                SyntaxKind::Name(name) if is_time && !takes_one(name) => Some(name.clone()),
                 SyntaxKind::Call(..) if is_time => symbol(callee),
                 _ => None,
             }
@@ -62,17 +71,53 @@ pub(super) fn differentiated(syntax: &Syntax) -> Option<String> {
         SyntaxKind::Call(..) => match named_function(syntax)? {
             ("Derivative" | "diff", [inner, time]) => {
                 let time = match &time.kind {
-                    SyntaxKind::List(pair) => pair.first()?,
+                    SyntaxKind::List(pair) => match pair.as_slice() {
+                        [time] => time,
+                        [time, one] if is_one(one) => time,
+                        _ => return None,
+                    },
                     _ => match named_function(time) {
                         Some(("Tuple", [time, one])) if is_one(one) => time,
                         _ => time,
                     },
                 };
-                (symbol(time)? == TIME).then(|| symbol(inner))?
+                (symbol(time)? == TIME).then(|| symbol(inner).or_else(|| signal(inner)))?
             }
             _ => None,
         },
         _ => None,
+    }
+}
+
+/// Whether a left side is a derivative of a higher order, however it is written.
+pub(super) fn is_higher_derivative(syntax: &Syntax) -> bool {
+    match &syntax.kind {
+        SyntaxKind::Prime(inner) => matches!(inner.kind, SyntaxKind::Prime(_)),
+        SyntaxKind::Call(callee, _) if matches!(callee.kind, SyntaxKind::Prime(_)) => {
+            is_higher_derivative(callee)
+        }
+        SyntaxKind::Call(_, arguments) => {
+            let is_derivative = matches!(named_function(syntax), Some(("Derivative" | "diff", _)));
+            let by_pair = || {
+                arguments.get(1).is_some_and(|second| {
+                    matches!(second.kind, SyntaxKind::List(_) | SyntaxKind::Number(_))
+                        || matches!(named_function(second), Some(("Tuple", _)))
+                })
+            };
+            is_derivative && (arguments.len() > 2 || by_pair())
+        }
+        // d^2x/dt^2, d2x/dt2
+        SyntaxKind::Product(factors) => match factors.as_slice() {
+            [.., (true, below)] => match &below.kind {
+                SyntaxKind::Power(base, _) => base.as_name() == Some("dt"),
+                SyntaxKind::Name(name) => {
+                    name.strip_prefix("dt").is_some_and(|rest| rest.parse::<u32>().is_ok())
+                }
+                _ => false,
+            },
+            _ => false,
+        },
+        _ => false,
     }
 }
 

@@ -39,16 +39,9 @@ impl Species {
         })
     }
 
-    /// Its initial value, as its symbol means it, where the file says so.
-    pub fn beginning(&self, size: Option<&RBig>) -> Option<RBig> {
-        let size = size.filter(|size| **size != RBig::ZERO);
-        match (self.is_amount, &self.amount, &self.concentration) {
-            (true, Some(amount), _) => Some(amount.clone()),
-            (true, None, Some(concentration)) => Some(concentration * size?),
-            (false, _, Some(concentration)) => Some(concentration.clone()),
-            (false, Some(amount), None) => Some(amount / size?),
-            (_, None, None) => None,
-        }
+    /// Its initial value by an amount or a concentration alone, whichever its symbol means.
+    fn given(&self, means_amount: bool) -> Option<&RBig> {
+        if means_amount { self.amount.as_ref() } else { self.concentration.as_ref() }
     }
 }
 
@@ -190,7 +183,7 @@ impl Reading<'_> {
         Ok(())
     }
 
-    fn moves_by_reactions(&self, id: &str) -> bool {
+    pub(super) fn moves_by_reactions(&self, id: &str) -> bool {
         self.index.species.get(id).is_some_and(|at| !self.species[*at].is_held) && self.rule(id).is_none()
     }
 
@@ -229,6 +222,74 @@ impl Reading<'_> {
             Some(change) => rate.plus(change),
             None => rate,
         })
+    }
+
+    /// The initial value of a species, as its symbol means it, where the file says so. Where it has to be found by the size of its compartment,
+    /// that size is asked for.
+    pub(super) fn beginning(
+        &self,
+        species: &Species,
+        size: impl FnOnce(&str) -> Option<ForeignExpr>,
+    ) -> Option<ForeignExpr> {
+        let number = |value: &RBig| ForeignExpr::new(ForeignKind::Number(value.clone()), &(0..0));
+        let means_amount = !self.is_concentration(species);
+        if let Some(value) = species.given(means_amount) {
+            return Some(number(value));
+        }
+        let other = species.given(!means_amount)?;
+        let size = size(&species.compartment)?;
+        Some(match (size.as_number(), means_amount) {
+            (Some(size), true) => number(&(other * size)),
+            (Some(size), false) if *size == RBig::ZERO => return None,
+            (Some(size), false) => number(&(other / size)),
+            (None, true) => number(other).times(size),
+            (None, false) => number(other).over(size),
+        })
+    }
+
+    /// The size of a compartment at the start: a number, or its name where a formula says what it is.
+    pub(super) fn size_at_start(&self, id: &str) -> Option<ForeignExpr> {
+        let assigned = self.rule(id).is_some_and(|rule| !rule.is_rate)
+            || self.initial_values.iter().any(|(own, _)| own == id);
+        match (assigned, self.compartment(id).and_then(|own| own.size.clone())) {
+            (true, _) => Some(ForeignExpr::name(id, &(0..0))),
+            (false, Some(size)) => Some(ForeignExpr::new(ForeignKind::Number(size), &(0..0))),
+            (false, None) => None,
+        }
+    }
+
+    /// Rates and definitions of species that nothing changes, in compartments that change: their amounts are constant, and so their concentrations
+    /// are not.
+    pub(super) fn add_held_species(&self, model: &mut ForeignModel) -> Result<(), Problem> {
+        for species in self.species.iter().filter(|one| one.is_held && self.rule(&one.id).is_none()) {
+            let Some(rule) = self.rule(&species.compartment).filter(|_| self.is_concentration(species))
+            else {
+                continue;
+            };
+            if rule.is_rate {
+                let rate = self.dilution(species)?.unwrap_or_else(|| ForeignExpr::integer(0, &species.span));
+                model.states.push(ForeignRate { name: species.id.clone(), rate, span: species.span.clone() });
+                model.remarks.push(format!(
+                    "the amount of '{}' is held: its concentration is a state that changes with the size of '{}'",
+                    species.id, species.compartment
+                ));
+                continue;
+            }
+            let has_beginning = self.initial_values.iter().any(|(id, _)| *id == species.id);
+            if let Some(amount) = species.amount.as_ref().filter(|_| !has_beginning) {
+                let amount = ForeignExpr::new(ForeignKind::Number(amount.clone()), &species.span);
+                let size = ForeignExpr::name(&species.compartment, &species.span);
+                model.definitions.push((species.id.clone(), amount.over(size)));
+            } else if self.changes(&species.compartment) {
+                let message = format!(
+                    "the amount of '{}' is held in a compartment whose size is assigned, and begins as a concentration",
+                    species.id
+                );
+                return Err(Problem::new(Code::Foreign, &species.span, message, "this species")
+                    .help("give it an initialAmount: its concentration is that by the size"));
+            }
+        }
+        Ok(())
     }
 
     fn is_concentration(&self, species: &Species) -> bool {

@@ -14,6 +14,9 @@ use std::collections::BTreeMap;
 /// Formulas that grow beyond this when functions are put in are refused.
 const LARGEST: usize = 200_000;
 
+/// A condition of more parts is refused: each nests the case.
+const MOST_PARTS: usize = 40;
+
 /// Values with more parts than these are not written twice.
 const TWICE: usize = 40;
 
@@ -233,30 +236,51 @@ impl Formulas<'_> {
             ("true", _) => Ok(then),
             ("false", _) => Ok(otherwise),
             ("apply", [not, inner]) if is(*not, "not") => self.chosen(*inner, otherwise, then, depth + 1),
+            // of one part alone it is that part
+            ("apply", [head, only]) if is(*head, "and") || is(*head, "or") => {
+                self.chosen(*only, then, otherwise, depth + 1)
+            }
+            // both values would stand there several times: one comparison of a number that is one or zero
+            ("apply", [head, _, _, ..])
+                if ["and", "or", "eq", "neq"].iter().any(|name| is(*head, name))
+                    && then.size() + otherwise.size() > TWICE =>
+            {
+                let span = place(condition);
+                let number = |value: i64| ForeignExpr::integer(value, &span);
+                let holds = self.chosen(condition, number(1), number(0), depth + 1)?;
+                let half = number(1).over(number(2));
+                Ok(case(holds, ForeignOrder::Greater, half, then, otherwise))
+            }
+            ("apply", [head, parts @ ..]) if (is(*head, "and") || is(*head, "or")) && !parts.is_empty() => {
+                if parts.len() > MOST_PARTS {
+                    let message = format!("a condition of more than {MOST_PARTS} parts");
+                    return Err(unread(condition, &message, "write cases within cases"));
+                }
+                let all = is(*head, "and");
+                let mut value = if all { then.clone() } else { otherwise.clone() };
+                for part in parts.iter().rev() {
+                    value = match all {
+                        true => self.chosen(*part, value, otherwise.clone(), depth + 1)?,
+                        false => self.chosen(*part, then.clone(), value, depth + 1)?,
+                    };
+                }
+                Ok(value)
+            }
+            // equal is not less and not greater
+            ("apply", [head, left, right]) if is(*head, "eq") || is(*head, "neq") => {
+                let (then, otherwise) = if is(*head, "eq") { (then, otherwise) } else { (otherwise, then) };
+                let (left, right) = (self.of(*left, depth + 1)?, self.of(*right, depth + 1)?);
+                let inner = case(left.clone(), ForeignOrder::AtLeast, right.clone(), then, otherwise.clone());
+                Ok(case(left, ForeignOrder::AtMost, right, inner, otherwise))
+            }
             ("apply", [head, left, right]) => {
                 let order = match head.tag_name().name() {
                     "lt" => ForeignOrder::Less,
                     "leq" => ForeignOrder::AtMost,
                     "gt" => ForeignOrder::Greater,
                     "geq" => ForeignOrder::AtLeast,
-                    // both values would stand there several times: one comparison of a number that is one or zero
-                    "and" | "or" if then.size() + otherwise.size() > TWICE => {
-                        let span = place(condition);
-                        let number = |value: i64| ForeignExpr::integer(value, &span);
-                        let holds = self.chosen(condition, number(1), number(0), depth + 1)?;
-                        let half = number(1).over(number(2));
-                        return Ok(case(holds, ForeignOrder::Greater, half, then, otherwise));
-                    }
-                    "and" => {
-                        let inner = self.chosen(*right, then, otherwise.clone(), depth + 1)?;
-                        return self.chosen(*left, inner, otherwise, depth + 1);
-                    }
-                    "or" => {
-                        let inner = self.chosen(*right, then.clone(), otherwise, depth + 1)?;
-                        return self.chosen(*left, then, inner, depth + 1);
-                    }
                     other => {
-                        let help = "one comparison with lt, leq, gt or geq; what holds on a thin set alone has no derivative";
+                        let help = "comparisons with lt, leq, gt, geq, eq or neq, joined by and, or, not";
                         return Err(unread(condition, &format!("cases by '{other}' are not read"), help));
                     }
                 };

@@ -270,8 +270,8 @@ impl<'b> Reading<'b> {
         let number = |value: RBig| ForeignExpr::new(super::expression::ForeignKind::Number(value), &(0..0));
         let mut starts = BTreeMap::new();
         for one in &self.species {
-            let size = self.compartment(&one.compartment).and_then(|own| own.size.as_ref());
-            starts.extend(one.beginning(size).map(|value| (one.id.clone(), number(value))));
+            let value = self.beginning(one, |size| self.size_at_start(size));
+            starts.extend(value.map(|value| (one.id.clone(), value)));
         }
         let sizes = self.compartments.iter().map(|one| (&one.id, &one.size));
         let parameters = self.parameters.iter().map(|(id, value)| (id, value));
@@ -367,6 +367,7 @@ impl<'b> Reading<'b> {
             }
         }
         self.add_reactions(&mut model)?;
+        self.add_held_species(&mut model)?;
         // laws stand in the order of the file, above the rates; states too
         let order: BTreeMap<&str, usize> =
             self.species.iter().enumerate().map(|(at, one)| (one.id.as_str(), at)).collect();
@@ -393,7 +394,8 @@ impl<'b> Reading<'b> {
     /// What does not change: sizes, constant species, parameters.
     fn add_constants(&self, model: &mut ForeignModel) -> Result<(), Problem> {
         let moved: BTreeSet<String> = model.states.iter().map(|state| state.name.clone()).collect();
-        let ruled = |id: &str| self.rule(id).is_some() || moved.contains(id);
+        let defined: BTreeSet<String> = model.definitions.iter().map(|(name, _)| name.clone()).collect();
+        let ruled = |id: &str| self.rule(id).is_some() || moved.contains(id) || defined.contains(id);
         let mut constants = Vec::new();
         let constant = |name: &str, value: Option<RBig>, is_unknown: bool| ForeignConstant {
             name: name.to_owned(),
@@ -404,11 +406,19 @@ impl<'b> Reading<'b> {
         for one in self.compartments.iter().filter(|one| !ruled(&one.id)) {
             constants.push(constant(&one.id, one.size.clone(), false));
         }
-        let mut held = Vec::new();
+        let (mut held, mut by_size) = (Vec::new(), Vec::new());
         for one in self.species.iter().filter(|one| !ruled(&one.id)) {
-            let size = self.compartment(&one.compartment).and_then(|own| own.size.clone());
-            constants.push(constant(&one.id, one.beginning(size.as_ref()), false));
+            let value = self.beginning(one, |size| self.size_at_start(size));
+            constants.push(constant(
+                &one.id,
+                value.as_ref().and_then(|value| value.as_number().cloned()),
+                false,
+            ));
             held.push(one.id.as_str());
+            // an amount in a compartment whose size is a formula
+            if let Some(value) = value.filter(|value| value.as_number().is_none()) {
+                by_size.push((one.id.clone(), value));
+            }
         }
         if !held.is_empty() {
             model.remarks.push(format!("species that are held are known constants: {}", held.join(", ")));
@@ -425,7 +435,8 @@ impl<'b> Reading<'b> {
         let mut states_begin = false;
         let mut moving = BTreeMap::new();
         let mut assigned = BTreeSet::new();
-        for (id, value) in &self.initial_values {
+        by_size.retain(|(id, _)| !self.initial_values.iter().any(|(own, _)| own == id));
+        for (id, value) in self.initial_values.iter().chain(&by_size) {
             if moved.contains(id) {
                 states_begin = true;
                 continue;
@@ -456,9 +467,34 @@ impl<'b> Reading<'b> {
                     .to_owned(),
             );
         }
+        let fixed: Vec<&str> = constants
+            .iter()
+            .filter(|constant| constant.may_be_unknown && assigned.contains(constant.name.as_str()))
+            .map(|constant| constant.name.as_str())
+            .collect();
+        if !fixed.is_empty() {
+            model
+                .remarks
+                .push(format!("fixed by initial assignments, and not identified: {}", fixed.join(", ")));
+        }
         constants.retain(|constant| !assigned.contains(constant.name.as_str()));
         model.constants = constants;
         Ok(())
+    }
+
+    /// Whether the size of a compartment, by its assignment rule, changes with time.
+    fn changes(&self, id: &str) -> bool {
+        let is_moved =
+            |id: &String| self.rule(id).is_some_and(|rule| rule.is_rate) || self.moves_by_reactions(id);
+        let moved: BTreeSet<String> = self
+            .species
+            .iter()
+            .map(|one| &one.id)
+            .chain(self.index.rules.keys())
+            .filter(|id| is_moved(id))
+            .cloned()
+            .collect();
+        self.depends_on_states(id, &moved, &mut BTreeMap::new())
     }
 
     /// Whether what a name stands for moves; `known` are the names of which that is known, those that are being looked at among them:

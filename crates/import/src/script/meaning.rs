@@ -46,7 +46,7 @@ pub(crate) fn meaning(syntax: &Syntax, special: &mut impl FnMut(&Syntax) -> Opti
                 Err(terms) => Ok(ForeignExpr::new(ForeignKind::Sum(terms), span)),
             }
         }
-        SyntaxKind::Product(factors) => {
+        SyntaxKind::Product(factors) | SyntaxKind::Pointwise(factors) => {
             Ok(ForeignExpr::new(ForeignKind::Product(all(factors, special)?), span))
         }
         SyntaxKind::Power(base, exponent) => {
@@ -124,11 +124,21 @@ fn compared(
             let (left, right) = (meaning(left, special)?, meaning(right, special)?);
             Ok(case(left, order, right, then, otherwise))
         }
-        // a condition that has a name: CasADi's @1
+        // a condition that has a name: CasADi's @1, one where it holds and zero elsewhere, or the other way about
         SyntaxKind::Name(_) => match special(condition) {
-            Some(Ok(ForeignExpr { kind: ForeignKind::Case { sides, order, .. }, .. })) => {
-                let (left, right) = *sides;
-                Ok(case(left, order, right, then, otherwise))
+            Some(Ok(ForeignExpr { kind: ForeignKind::Case { sides, order, values }, .. })) => {
+                let ((left, right), is_number) = (*sides, |value: &ForeignExpr, number: i64| {
+                    value.as_number().is_some_and(|own| *own == number.into())
+                });
+                let (holds, fails) = *values;
+                match (
+                    is_number(&holds, 1) && is_number(&fails, 0),
+                    is_number(&holds, 0) && is_number(&fails, 1),
+                ) {
+                    (true, _) => Ok(case(left, order, right, then, otherwise)),
+                    (_, true) => Ok(case(left, order, right, otherwise, then)),
+                    _ => Err(unread(&condition.span)),
+                }
             }
             Some(Err(problem)) => Err(problem),
             _ => Err(unread(&condition.span)),
@@ -159,11 +169,9 @@ fn function(syntax: &Syntax, special: &mut impl FnMut(&Syntax) -> Option<Meant>)
     match (name, arguments) {
         ("ifelse" | "if_else", [condition, then, otherwise]) => choice(condition, then, otherwise, special),
         ("Piecewise" | "piecewise", cases) if !cases.is_empty() => piecewise(syntax, cases, special),
-        // what changes the form and not the value
-        (
-            "simplify" | "expand" | "factor" | "collect" | "vpa" | "sympify" | "S" | "UnevaluatedExpr",
-            [inner],
-        ) => meaning(inner, special),
+        // what changes the form and not the value, and is called so by nobody else
+        ("UnevaluatedExpr", [inner]) => meaning(inner, special),
+        (_, [inner]) if keeps_the_value(syntax) => meaning(inner, special),
         _ => {
             if let Some(keyword) = arguments.iter().find(|one| matches!(one.kind, SyntaxKind::Equation(..))) {
                 return Err(Problem::new(
@@ -177,6 +185,22 @@ fn function(syntax: &Syntax, special: &mut impl FnMut(&Syntax) -> Option<Meant>)
                 arguments.iter().map(|one| meaning(one, special)).collect::<Result<_, _>>()?;
             call(name, values, &syntax.span)
         }
+    }
+}
+
+/// Whether a call changes the form of its argument and not the value: a function of SymPy, by its module (`sym.factor(x)`). By the name
+/// alone it may be any function.
+pub(crate) fn keeps_the_value(syntax: &Syntax) -> bool {
+    const NAMES: [&str; 8] =
+        ["simplify", "expand", "factor", "collect", "together", "cancel", "sympify", "S"];
+    let SyntaxKind::Call(callee, _) = &syntax.kind else { return false };
+    match &callee.kind {
+        SyntaxKind::Member(module, name) => {
+            matches!(module.as_name(), Some("sym" | "sympy" | "sp" | "sy" | "Symbolics"))
+                && NAMES.contains(&name.as_str())
+        }
+        SyntaxKind::Name(name) => matches!(name.as_str(), "simplify" | "expand"),
+        _ => false,
     }
 }
 

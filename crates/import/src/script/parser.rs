@@ -31,6 +31,10 @@ fn joined(kind: SyntaxKind, begin: &Span, end: usize) -> Syntax {
     Syntax { kind, span: begin.start..end }
 }
 
+fn product_kind(by_entries: bool) -> fn(Vec<(bool, Syntax)>) -> SyntaxKind {
+    if by_entries { SyntaxKind::Pointwise } else { SyntaxKind::Product }
+}
+
 impl<'a> Parser<'a> {
     /// A parser of tokens, of which the last one is the end.
     pub fn new(tokens: &'a [Token], dialect: Dialect) -> Parser<'a> {
@@ -92,7 +96,36 @@ impl<'a> Parser<'a> {
             format!("expected {wanted}, and {found}"),
             format!("expected {wanted}"),
         )
-        .help("this is as far as the file was understood")
+        .help(self.advice())
+    }
+
+    /// What may be meant where something else was expected.
+    fn advice(&self) -> &'static str {
+        let token = self.peek();
+        let before = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
+        let ends_factor = before
+            .is_some_and(|last| matches!(last.kind, TokenKind::Number | TokenKind::Name) || last.is(")"));
+        let begins_factor = matches!(token.kind, TokenKind::Name | TokenKind::Number) || token.is("(");
+        match &token.kind {
+            TokenKind::Name if ["and", "or", "else"].contains(&token.text.as_str()) => {
+                "this is as far as the file was understood"
+            }
+            TokenKind::Name
+                if ["i", "j", "im", "I"].contains(&token.text.as_str())
+                    && !token.spaced
+                    && before.is_some_and(|last| last.kind == TokenKind::Number) =>
+            {
+                "there are no complex numbers"
+            }
+            _ if token.newline && self.open.last() == Some(&Bracket::Round) => {
+                "a ',' is missing above, or a bracket is not closed"
+            }
+            _ if ends_factor && begins_factor && !token.newline => "a product is written with '*', as in 2*x",
+            TokenKind::Sign("|") => "an absolute value is written abs(x)",
+            TokenKind::Sign("//") => "a comment begins with '#', and a quotient is written with '/'",
+            TokenKind::End if !self.open.is_empty() => "a bracket is not closed",
+            _ => "this is as far as the file was understood",
+        }
     }
 
     /// Whether an expression ends before a token because a line does.
@@ -214,16 +247,33 @@ impl<'a> Parser<'a> {
         let first = self.signed()?;
         let begin = first.span.clone();
         let mut factors = vec![(false, first)];
+        // whether the factors so far are multiplied entry by entry, and how often that changed
+        let (mut by_entries, mut changes) = (false, 0);
         loop {
             let signs: &[&'static str] = match self.dialect {
                 Dialect::Matlab | Dialect::Julia => &["*", "/", ".*", "./"],
                 Dialect::Python | Dialect::Printed => &["*", "/"],
             };
             let Some(sign) = self.operator(signs) else { break };
+            let own = self.dialect == Dialect::Matlab && sign.starts_with('.');
+            if own != by_entries && factors.len() > 1 {
+                changes += 1;
+                if changes > DEEPEST {
+                    return Err(Problem::new(
+                        Code::ForeignText,
+                        &self.peek().span,
+                        "a product of too many parts",
+                        "here",
+                    )
+                    .help("give its parts names of their own"));
+                }
+                factors = vec![(false, self.collected(factors, &begin, product_kind(by_entries))?)];
+            }
+            by_entries = own;
             self.next();
             factors.push((matches!(sign, "/" | "./"), self.signed()?));
         }
-        self.collected(factors, &begin, SyntaxKind::Product)
+        self.collected(factors, &begin, product_kind(by_entries))
     }
 
     fn collected(
@@ -381,7 +431,13 @@ impl<'a> Parser<'a> {
                 TokenKind::Sign(_) if divided => return Ok(inner),
                 TokenKind::Sign("(") if !matches!(inner.kind, SyntaxKind::Number(_)) => {
                     self.next();
-                    SyntaxKind::Call(Box::new(inner), self.list(")", Bracket::Round)?)
+                    let mut list = self.list(")", Bracket::Round)?;
+                    // Julia has the base of a logarithm in front
+                    let has_base = self.dialect == Dialect::Julia && list.len() == 2;
+                    if has_base && inner.as_name() == Some("log") {
+                        list.swap(0, 1);
+                    }
+                    SyntaxKind::Call(Box::new(inner), list)
                 }
                 TokenKind::Sign("[") if self.dialect != Dialect::Matlab && !token.spaced => {
                     self.next();

@@ -20,6 +20,8 @@ pub(crate) enum SyntaxKind {
     Sum(Vec<(bool, Syntax)>),
     /// Factors, `true` where one is divided by.
     Product(Vec<(bool, Syntax)>),
+    /// Factors of `.*` and `./` in MATLAB, entry by entry, `true` where one is divided by.
+    Pointwise(Vec<(bool, Syntax)>),
     Power(Box<Syntax>, Box<Syntax>),
     /// `<`, `<=`, `>`, `>=`, `==` or `!=` of two.
     Compare(&'static str, Box<Syntax>, Box<Syntax>),
@@ -47,6 +49,40 @@ impl Syntax {
         match &self.kind {
             SyntaxKind::Name(name) => Some(name),
             _ => None,
+        }
+    }
+
+    /// Calls `each` for every name in it.
+    pub fn names(&self, each: &mut impl FnMut(&str)) {
+        let mut all = |list: &[Syntax]| list.iter().for_each(|one| one.names(each));
+        match &self.kind {
+            SyntaxKind::Name(name) => each(name),
+            SyntaxKind::Number(_) | SyntaxKind::Text(_) => {}
+            SyntaxKind::Sum(list) | SyntaxKind::Product(list) | SyntaxKind::Pointwise(list) => {
+                list.iter().for_each(|(_, one)| one.names(each));
+            }
+            SyntaxKind::Power(a, b) | SyntaxKind::Compare(_, a, b) | SyntaxKind::Equation(_, a, b) => {
+                a.names(each);
+                b.names(each);
+            }
+            SyntaxKind::Choice(a, b, c) => {
+                a.names(each);
+                b.names(each);
+                c.names(each);
+            }
+            SyntaxKind::Not(inner) | SyntaxKind::Prime(inner) | SyntaxKind::Member(inner, _) => {
+                inner.names(each)
+            }
+            SyntaxKind::Call(callee, list) | SyntaxKind::Index(callee, list) => {
+                callee.names(each);
+                list.iter().for_each(|one| one.names(each));
+            }
+            SyntaxKind::List(list) => all(list),
+            SyntaxKind::Rows(rows) => rows.iter().for_each(|row| all(row)),
+            SyntaxKind::Pairs(pairs) => pairs.iter().for_each(|(a, b)| {
+                a.names(each);
+                b.names(each);
+            }),
         }
     }
 

@@ -57,6 +57,14 @@ const SIGNS: [&str; 47] = [
     ";", ":", "~", "!", "?", "@", "&", "|", ".", "'",
 ];
 
+/// Signs of print, and those of the keyboard.
+const PRINTED_SIGNS: [(char, &str); 5] = [('−', "-"), ('·', "*"), ('⋅', "*"), ('×', "*"), ('∗', "*")];
+
+/// Digits that are raised.
+fn is_raised(c: char) -> bool {
+    matches!(c, '⁰' | '¹' | '²' | '³' | '⁴'..='⁹' | 'ⁿ')
+}
+
 /// Comments with the places where they begin.
 pub(crate) type Comments = Vec<(usize, String)>;
 
@@ -113,7 +121,10 @@ impl Reading<'_> {
                 Some(c) => self.one(c, spaced || newline)?,
             };
             let (span, ends) = (begin..self.at, kind == TokenKind::End);
-            let text = self.text[span.clone()].to_owned();
+            let text = match kind == TokenKind::Name && self.dialect == Dialect::Julia {
+                true => normalised(&self.text[span.clone()]),
+                false => self.text[span.clone()].to_owned(),
+            };
             self.tokens.push(Token { kind, span, text, spaced: spaced || newline, newline });
             if ends {
                 return Ok(());
@@ -223,6 +234,14 @@ impl Reading<'_> {
                 (Some(mark), true) => mark,
                 _ => length,
             };
+            if self.dialect != Dialect::Julia
+                && let Some((at, c)) = rest[..length].char_indices().find(|(_, c)| is_raised(*c))
+            {
+                let span = self.at + at..self.at + at + c.len_utf8();
+                let sign = if self.dialect == Dialect::Python { "**" } else { "^" };
+                return Err(Problem::new(Code::ForeignText, &span, format!("'{c}' is no power"), "this")
+                    .help(format!("a power is written with '{sign}', as in x{sign}2")));
+            }
             self.at += length;
             return Ok(TokenKind::Name);
         }
@@ -236,15 +255,32 @@ impl Reading<'_> {
         if c == '"' || c == '\'' && !behind && self.dialect != Dialect::Julia {
             return self.quoted(c);
         }
+        // signs as they are printed
+        if let Some((_, sign)) = PRINTED_SIGNS.iter().find(|(own, _)| *own == c)
+            && (self.dialect == Dialect::Printed || self.dialect == Dialect::Julia && !matches!(c, '×' | '∗'))
+        {
+            self.at += c.len_utf8();
+            return Ok(TokenKind::Sign(sign));
+        }
         let Some(sign) = SIGNS.into_iter().find(|sign| rest.starts_with(*sign)) else {
             let span = self.at..self.at + c.len_utf8();
+            let help = match c {
+                '−' => "write the minus sign of the keyboard, '-'",
+                '·' | '⋅' | '×' | '∗' => "a product is written with '*'",
+                '÷' => "a quotient is written with '/'",
+                '√' => "a root is written sqrt(x)",
+                '°' => "angles are in radians: write x*pi/180",
+                '%' => "a comment begins with '#'; a percentage is written as a decimal",
+                '\\' | '$' => "LaTeX is not read: write an equation as x' = -k*x",
+                _ => "take it out, or write what it stands for",
+            };
             return Err(Problem::new(
                 Code::ForeignText,
                 &span,
                 format!("'{c}' begins nothing that can be read"),
                 "this",
             )
-            .help("take it out, or write what it stands for"));
+            .help(help));
         };
         self.at += sign.len();
         Ok(TokenKind::Sign(sign))
@@ -334,6 +370,41 @@ impl Reading<'_> {
         );
         Err(problem.help(format!("close it with {end}")))
     }
+}
+
+/// Letters with marks that follow them, and the one letter that both are. Those of Latin and of time derivatives: others are left as they are.
+const COMPOSED: [(char, &str, &str); 9] = [
+    ('\u{300}', "aeiounwyAEIOUNWY", "àèìòùǹẁỳÀÈÌÒÙǸẀỲ"),
+    ('\u{301}', "aeiouyclnrszgkmpwAEIOUYCLNRSZGKMPW", "áéíóúýćĺńŕśźǵḱḿṕẃÁÉÍÓÚÝĆĹŃŔŚŹǴḰḾṔẂ"),
+    ('\u{302}', "aeioucghjswyzAEIOUCGHJSWYZ", "âêîôûĉĝĥĵŝŵŷẑÂÊÎÔÛĈĜĤĴŜŴŶẐ"),
+    ('\u{303}', "anoiuevyANOIUEVY", "ãñõĩũẽṽỹÃÑÕĨŨẼṼỸ"),
+    ('\u{304}', "aeiouygAEIOUYG", "āēīōūȳḡĀĒĪŌŪȲḠ"),
+    ('\u{307}', "abcdefghmnoprstwxyzABCDEFGHIMNOPRSTWXYZ", "ȧḃċḋėḟġḣṁṅȯṗṙṡṫẇẋẏżȦḂĊḊĖḞĠḢİṀṄȮṖṘṠṪẆẊẎŻ"),
+    ('\u{308}', "aeiouywxhtAEIOUYWXH", "äëïöüÿẅẍḧẗÄËÏÖÜŸẄẌḦ"),
+    ('\u{30a}', "auwyAU", "åůẘẙÅŮ"),
+    ('\u{30c}', "cdenrstzaiougkhjCDENRSTZAIOUGKH", "čďěňřšťžǎǐǒǔǧǩȟǰČĎĚŇŘŠŤŽǍǏǑǓǦǨȞ"),
+];
+
+/// A name as Julia takes it: letters that look alike, and letters with a mark that are written in two ways, are one.
+fn normalised(name: &str) -> String {
+    let mut out = String::with_capacity(name.len());
+    for c in name.chars() {
+        let composed = COMPOSED.iter().find(|(mark, ..)| *mark == c).and_then(|(_, plain, marked)| {
+            let last = out.chars().last()?;
+            let at = plain.chars().position(|own| own == last)?;
+            marked.chars().nth(at)
+        });
+        match (c, composed) {
+            ('\u{b5}', _) => out.push('\u{3bc}'),
+            ('\u{25b}', _) => out.push('\u{3b5}'),
+            (_, Some(composed)) => {
+                out.pop();
+                out.push(composed);
+            }
+            _ => out.push(c),
+        }
+    }
+    out
 }
 
 fn line_of(text: &str) -> &str {
