@@ -2,7 +2,7 @@
 
 use super::super::expression::{ForeignExpr, ForeignKind};
 use super::syntax::Syntax;
-use super::workspace::{MOST_ENTRIES, ScriptValue, ScriptWorkspace};
+use super::workspace::{Form, MOST_ENTRIES, ScriptValue, ScriptWorkspace};
 use palmistry_lang::{Code, Problem};
 
 impl ScriptWorkspace<'_> {
@@ -40,11 +40,24 @@ impl ScriptWorkspace<'_> {
     /// columns, as in MATLAB, or by rows; behind the end of a vector there are places, too.
     pub fn element(&self, name: &str, numbers: &[usize], by_columns: bool) -> Option<usize> {
         let (rows, count) = match self.get(name) {
-            Some(Ok(ScriptValue::Many { rows, entries })) => (rows.max(1), entries.len()),
+            Some(Ok(ScriptValue::Many { rows, entries, form })) => {
+                // an element of a list of lists is a list
+                if form == Form::Rows && rows != entries.len() {
+                    return None;
+                }
+                (rows.max(1), entries.len())
+            }
             _ => (1, 1),
         };
         let columns = count / rows;
         let is_matrix = rows > 1 && columns > 1;
+        // a second index that would make a matrix of a vector
+        if let [row, column] = *numbers
+            && (row > 1 && columns > 1 || column > 1 && rows > 1)
+            && !is_matrix
+        {
+            return None;
+        }
         match *numbers {
             [at] | [at, 1] | [1, at] if !is_matrix => at.checked_sub(1),
             [at] if is_matrix && by_columns => {
@@ -60,8 +73,14 @@ impl ScriptWorkspace<'_> {
     }
 
     /// Assigns a value to the entry at a place, see [`ScriptWorkspace::element`]. A vector grows where it has none there; one that is not there
-    /// yet is a row, as in MATLAB.
-    pub fn assign_element(&mut self, name: &str, place: usize, value: ForeignExpr) -> Result<(), Problem> {
+    /// yet is a row, as in MATLAB, or a column where `down` says so.
+    pub fn assign_element(
+        &mut self,
+        name: &str,
+        place: usize,
+        down: bool,
+        value: ForeignExpr,
+    ) -> Result<(), Problem> {
         let span = value.span.clone();
         if place >= MOST_ENTRIES {
             return Err(Problem::new(
@@ -71,19 +90,23 @@ impl ScriptWorkspace<'_> {
                 "this",
             ));
         }
-        let (rows, mut entries) = match self.get(name) {
-            None | Some(Ok(ScriptValue::Else)) => (1, Vec::new()),
-            Some(Ok(ScriptValue::One(one))) => (1, vec![one]),
-            Some(Ok(ScriptValue::Many { rows, entries })) => (rows, entries),
+        let (rows, mut entries, form) = match self.get(name) {
+            None | Some(Ok(ScriptValue::Else)) => (1, Vec::new(), Form::Matrix),
+            Some(Ok(ScriptValue::One(one))) => (1, vec![one], Form::Matrix),
+            Some(Ok(ScriptValue::Many { rows, entries, form })) => (rows, entries, form),
             Some(Err(why)) => return Err(why),
         };
-        let is_column = rows == entries.len() && rows > 1;
+        if form != Form::Matrix && place >= entries.len() {
+            return Err(Problem::new(Code::Foreign, &span, format!("'{name}' has no such element"), "this")
+                .help("elements are counted from 0; a list grows by 'append'"));
+        }
+        let is_column = down || rows == entries.len() && rows > 1;
         if place >= entries.len() {
             entries.resize(place + 1, ForeignExpr::integer(0, &span));
         }
         entries[place] = value;
         let rows = if is_column { entries.len() } else { rows.max(1) };
-        self.bind(name, ScriptValue::Many { rows, entries });
+        self.bind(name, ScriptValue::Many { rows, entries, form });
         Ok(())
     }
 }

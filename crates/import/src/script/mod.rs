@@ -2,6 +2,7 @@
 //! Nothing is ever run: what is not an expression or an assignment is refused at its line.
 
 mod elements;
+mod forms;
 mod meaning;
 mod parser;
 mod syntax;
@@ -12,4 +13,4 @@ pub(super) use meaning::{MOST_CASES, meaning, named_function};
 pub(super) use parser::Parser;
 pub(super) use syntax::{Syntax, SyntaxKind};
 pub(super) use tokens::{Dialect, Token, TokenKind, tokens};
-pub(super) use workspace::{ScriptValue, ScriptWorkspace};
+pub(super) use workspace::{Form, ScriptValue, ScriptWorkspace};

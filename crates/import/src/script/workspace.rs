@@ -3,8 +3,12 @@
 
 use super::super::expression::{ForeignExpr, ForeignKind, Span};
 use super::super::functions::{self, constant, is_function};
-use super::meaning::{meaning, named_function};
+use super::forms::{
+    self, added, by_entries, each, flat, matrix, multiplied, product_of, stacked, transposed,
+};
+use super::meaning::{keeps_the_value, meaning, named_function};
 use super::syntax::{Syntax, SyntaxKind};
+use super::tokens::Dialect;
 use palmistry_io::foreign::Budget;
 use palmistry_lang::{Code, Problem};
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,9 +22,30 @@ pub(crate) enum ScriptValue {
     /// A number: an expression of symbols and definitions.
     One(ForeignExpr),
     /// A matrix, row by row; a list is a column.
-    Many { rows: usize, entries: Vec<ForeignExpr> },
+    Many { rows: usize, entries: Vec<ForeignExpr>, form: Form },
     /// Something that is no number and no matrix.
     Else,
+}
+
+/// What a matrix is in its language: by that it is joined and multiplied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// Of MATLAB, or of SymPy.
+    Matrix,
+    /// A list of Python.
+    List,
+    /// A list of lists of Python.
+    Rows,
+    /// An array of numpy with one index.
+    Vector,
+    /// An array of numpy with two.
+    Array,
+}
+
+impl Form {
+    pub fn is_list(self) -> bool {
+        matches!(self, Form::List | Form::Rows)
+    }
 }
 
 impl ScriptValue {
@@ -63,15 +88,26 @@ pub(crate) struct ScriptWorkspace<'b> {
     used: BTreeMap<String, usize>,
     /// Names that are kept as values and get no definition.
     pub plain: BTreeSet<String>,
+    dialect: Dialect,
+    /// Names that Python takes from modules that are not read, each with the module.
+    pub elsewhere: BTreeMap<String, String>,
+    /// Names that Python takes from SymPy.
+    pub from_sympy: BTreeSet<String>,
+    /// Functions of time, or of something else: their names, what they are functions of, and where.
+    pub functions: BTreeMap<String, (Vec<ForeignExpr>, Span)>,
 }
 
 type Valued = Result<ScriptValue, Problem>;
 
 impl<'b> ScriptWorkspace<'b> {
     /// No names yet.
-    pub fn new(budget: &'b Budget) -> ScriptWorkspace<'b> {
+    pub fn new(budget: &'b Budget, dialect: Dialect) -> ScriptWorkspace<'b> {
         ScriptWorkspace {
             budget,
+            dialect,
+            elsewhere: BTreeMap::new(),
+            from_sympy: BTreeSet::new(),
+            functions: BTreeMap::new(),
             bound: BTreeMap::new(),
             symbols: BTreeSet::new(),
             definitions: Vec::new(),
@@ -96,6 +132,21 @@ impl<'b> ScriptWorkspace<'b> {
         }
         self.symbols.insert(name.to_owned());
         Ok(ScriptValue::One(ForeignExpr::name(name, span)))
+    }
+
+    /// Whether a definition has a name.
+    pub fn has_definition(&self, name: &str) -> bool {
+        self.defined.contains(name)
+    }
+
+    /// Whether a name stands for several numbers, or for something that could not be read.
+    pub fn holds_a_list(&self, name: &str) -> bool {
+        matches!(self.bound.get(name), Some(Ok(ScriptValue::Many { .. }) | Err(_)))
+    }
+
+    /// Two lists, one behind the other.
+    pub fn chained(&self, left: ScriptValue, right: ScriptValue, span: &Span) -> Valued {
+        forms::chained(left, right, span)
     }
 
     /// Binds a name.
@@ -186,7 +237,7 @@ impl<'b> ScriptWorkspace<'b> {
             SyntaxKind::List(list) => {
                 let parts: Vec<ScriptValue> =
                     list.iter().map(|part| self.value(part)).collect::<Result<_, _>>()?;
-                stacked(parts.into_iter().map(|part| vec![part]).collect(), span)
+                forms::list(parts, span)
             }
             SyntaxKind::Rows(rows) => {
                 let rows = rows
@@ -199,6 +250,7 @@ impl<'b> ScriptWorkspace<'b> {
             SyntaxKind::Text(_) => Ok(ScriptValue::Else),
             SyntaxKind::Member(inner, name) if name == "T" => Ok(transposed(self.value(inner)?)),
             SyntaxKind::Call(..) => self.call(syntax),
+            SyntaxKind::Index(inner, indices) => self.indexed(inner, indices, span),
             SyntaxKind::Sum(terms) => {
                 let mut sum: Option<ScriptValue> = None;
                 for (subtracted, term) in terms {
@@ -206,18 +258,38 @@ impl<'b> ScriptWorkspace<'b> {
                     sum = Some(match sum {
                         None if *subtracted => each(term, |one| one.negative()),
                         None => term,
-                        Some(sum) => entrywise(sum, term, *subtracted, span)?,
+                        Some(sum) => added(sum, term, *subtracted, span)?,
                     });
                 }
                 Ok(flat(sum.unwrap_or(ScriptValue::Else), span))
             }
             SyntaxKind::Product(factors) => {
+                let is_list =
+                    |value: &ScriptValue| matches!(value, ScriptValue::Many { form, .. } if form.is_list());
+                let mut product: Option<ScriptValue> = None;
+                for (divided, factor) in factors {
+                    let factor = self.value(factor)?;
+                    product = Some(match (product, factor) {
+                        (None, factor) => factor,
+                        (Some(list), ScriptValue::One(times)) | (Some(ScriptValue::One(times)), list)
+                            if !divided && is_list(&list) =>
+                        {
+                            forms::repeated(list, self.whole(&times), span)?
+                        }
+                        (Some(product), factor) => multiplied(product, factor, *divided, span)?,
+                    });
+                }
+                Ok(flat(product.unwrap_or(ScriptValue::Else), span))
+            }
+            SyntaxKind::Pointwise(factors) => {
                 let mut product: Option<ScriptValue> = None;
                 for (divided, factor) in factors {
                     let factor = self.value(factor)?;
                     product = Some(match product {
                         None => factor,
-                        Some(product) => multiplied(product, factor, *divided, span)?,
+                        Some(product) => {
+                            by_entries(product, factor, &|a, b| product_of(a, b, *divided), span)?
+                        }
                     });
                 }
                 Ok(flat(product.unwrap_or(ScriptValue::Else), span))
@@ -252,56 +324,156 @@ impl<'b> ScriptWorkspace<'b> {
                     .help(format!("declare '{name}' as a symbol above its use"))),
                 },
             }),
-            SyntaxKind::Call(..) if part.span != syntax.span => match self.call(part) {
-                Ok(ScriptValue::One(one)) => Some(Ok(one)),
-                Ok(ScriptValue::Many { entries, .. }) if entries.len() == 1 => {
-                    entries.into_iter().next().map(Ok)
+            SyntaxKind::Call(..) | SyntaxKind::Index(..) if part.span != syntax.span => {
+                match self.value(part) {
+                    Ok(ScriptValue::One(one)) => Some(Ok(one)),
+                    Ok(ScriptValue::Many { entries, .. }) if entries.len() == 1 => {
+                        entries.into_iter().next().map(Ok)
+                    }
+                    Ok(_) => Some(Err(Problem::new(Code::Foreign, &part.span, "this is no number", "this"))),
+                    Err(problem) => Some(Err(problem)),
                 }
-                Ok(_) => Some(Err(Problem::new(Code::Foreign, &part.span, "this is no number", "this"))),
-                Err(problem) => Some(Err(problem)),
-            },
+            }
             _ => None,
         };
         meaning(syntax, &mut special)
     }
 
+    /// `x[0]`, `A[0, 1]` of Python.
+    fn indexed(&mut self, inner: &Syntax, indices: &[Syntax], span: &Span) -> Valued {
+        let refused = |what: &str| {
+            Problem::new(Code::Foreign, span, what.to_owned(), "this")
+                .help("elements are counted from 0; write the symbol, or the element's formula")
+        };
+        let ScriptValue::Many { rows, entries, form } = self.value(inner)? else {
+            return Err(refused("this has no elements"));
+        };
+        let mut numbers = Vec::new();
+        for index in indices {
+            let number = self.one(index).ok().and_then(|index| self.whole(&index));
+            numbers.push(number.ok_or_else(|| refused("elements by such an index are not read"))?);
+        }
+        let columns = entries.len() / rows.max(1);
+        // from the end, where it is negative
+        let place = |number: i64, count: usize| {
+            let number = if number < 0 { number.checked_add(count as i64)? } else { number };
+            usize::try_from(number).ok().filter(|place| *place < count)
+        };
+        let found = match (form, numbers.as_slice()) {
+            (Form::List | Form::Vector | Form::Matrix, [at]) => place(*at, entries.len()),
+            (Form::Rows | Form::Array, [at]) => {
+                let row = place(*at, rows).ok_or_else(|| refused("there is no such row"))?;
+                let entries: Vec<ForeignExpr> = entries[row * columns..(row + 1) * columns].to_vec();
+                let form = if form == Form::Rows { Form::List } else { Form::Vector };
+                return Ok(ScriptValue::Many { rows: entries.len(), entries, form });
+            }
+            (Form::Matrix | Form::Array, [row, column]) => {
+                place(*row, rows).zip(place(*column, columns)).map(|(row, column)| row * columns + column)
+            }
+            _ => return Err(refused("elements by such indices are not read")),
+        };
+        let found = found.ok_or_else(|| refused("there is no such element"))?;
+        Ok(ScriptValue::One(ForeignExpr { span: span.clone(), ..entries[found].clone() }))
+    }
+
+    /// An element of what a name stands for, in MATLAB; a call of it is nothing in Python.
+    fn element_of(&mut self, name: &str, arguments: &[Syntax], span: &Span) -> Option<Valued> {
+        let bound = match self.get(name)? {
+            Ok(bound) => bound,
+            // why something is not there is reported where it is used
+            Err(why) => return Some(Err(why)),
+        };
+        let entries = match bound {
+            ScriptValue::Else => return None,
+            ScriptValue::One(one) => vec![one],
+            ScriptValue::Many { entries, .. } => entries,
+        };
+        if self.dialect == Dialect::Python {
+            let message = format!("'{name}' is no function, and a bracket stands behind it");
+            return Some(Err(Problem::new(Code::Foreign, span, message, "this")
+                .help(format!("a product is written with '*': {name}*(...); an element is {name}[0]"))));
+        }
+        let mut numbers = Vec::new();
+        for index in arguments {
+            match self.count(index) {
+                Ok(number) => numbers.extend(number),
+                Err(why) => return Some(Err(why)),
+            }
+        }
+        let is_whole = numbers.len() == arguments.len() && (1..=2).contains(&numbers.len());
+        let place = if is_whole { self.element(name, &numbers, true) } else { None };
+        let inside = place.and_then(|place| entries.get(place).cloned());
+        Some(inside.map(|one| ScriptValue::One(ForeignExpr { span: span.clone(), ..one })).ok_or_else(|| {
+            Problem::new(Code::Foreign, span, format!("'{name}' has no such element"), "this")
+                .help("elements are counted from 1, and asked for by numbers; a product is written with '*'")
+        }))
+    }
+
     fn call(&mut self, syntax: &Syntax) -> Valued {
         let span = &syntax.span;
         let Some((name, arguments)) = named_function(syntax) else { return self.function_of_time(syntax) };
-        // why something is not there is reported where it is used
-        if let Some(Err(why)) = self.get(name) {
-            return Err(why);
-        }
-        // an element of a vector or of a matrix, in MATLAB
-        if let (Some(Ok(ScriptValue::Many { entries, .. })), 1..=2) = (self.get(name), arguments.len()) {
-            let mut numbers = Vec::new();
-            for index in arguments {
-                numbers.extend(self.count(index)?);
+        let module = match &syntax.kind {
+            SyntaxKind::Call(callee, _) => match &callee.kind {
+                SyntaxKind::Member(module, _) => Some(module.as_name().unwrap_or_default()),
+                _ => None,
+            },
+            _ => None,
+        };
+        if module.is_none() {
+            if let Some(from) = self.elsewhere.get(name) {
+                let message = format!("'{name}' comes from '{from}', which is not read");
+                return Err(Problem::new(Code::Foreign, span, message, "this call")
+                    .help("write its formula in its place"));
             }
-            let is_whole = numbers.len() == arguments.len();
-            let place = if is_whole { self.element(name, &numbers, true) } else { None };
-            let inside = place.and_then(|place| entries.get(place).cloned());
-            return inside.map(ScriptValue::One).ok_or_else(|| {
-                Problem::new(Code::Foreign, span, format!("'{name}' has no such element"), "this")
-                    .help("elements are counted from 1")
-            });
+            if let Some(element) = self.element_of(name, arguments, span) {
+                return element;
+            }
         }
+        let is_numpy = matches!(module, Some("np" | "numpy"));
         match (name, arguments) {
-            ("Matrix" | "ImmutableMatrix" | "MutableDenseMatrix" | "array", [list]) => self.value(list),
-            ("transpose" | "simplify" | "expand" | "vpa" | "sym", [inner])
+            ("Matrix" | "ImmutableMatrix" | "MutableDenseMatrix" | "array", [list]) => {
+                Ok(match self.value(list)? {
+                    ScriptValue::Many { rows, entries, form } => {
+                        let form = match (name, form) {
+                            ("array", Form::List | Form::Vector) => Form::Vector,
+                            ("array", _) => Form::Array,
+                            _ => Form::Matrix,
+                        };
+                        ScriptValue::Many { rows, entries, form }
+                    }
+                    other => other,
+                })
+            }
+            ("transpose", [inner]) => Ok(transposed(self.value(inner)?)),
+            ("simplify" | "expand" | "vpa" | "sym", [inner])
                 if !matches!(inner.kind, SyntaxKind::Text(_)) =>
             {
-                let value = self.value(inner)?;
-                Ok(if name == "transpose" { transposed(value) } else { value })
+                self.value(inner)
             }
-            ("length" | "numel", [list]) => {
-                let count = self.value(list)?.entries().map_or(1, |entries| entries.len());
+            ("collect", [inner]) if self.dialect == Dialect::Matlab => self.value(inner),
+            (_, [inner])
+                if keeps_the_value(syntax) || self.from_sympy.contains(name) && KEPT.contains(&name) =>
+            {
+                self.value(inner)
+            }
+            // the longest side of a matrix, and all of its entries
+            ("length" | "numel" | "len", [list]) => {
+                let count = match self.value(list)? {
+                    ScriptValue::Many { rows, entries, form } => match (name, form) {
+                        ("numel", _) | (_, Form::List | Form::Vector) => entries.len(),
+                        _ if entries.is_empty() => 0,
+                        ("len", Form::Rows | Form::Array) => rows,
+                        ("len", _) => entries.len(),
+                        _ => rows.max(entries.len() / rows.max(1)),
+                    },
+                    _ => 1,
+                };
                 Ok(ScriptValue::One(ForeignExpr::integer(count as i64, span)))
             }
             ("size", [list, way]) => {
                 let (value, way) = (self.value(list)?, self.count(way)?);
                 let (rows, all) = match &value {
-                    ScriptValue::Many { rows, entries } => (*rows, entries.len()),
+                    ScriptValue::Many { rows, entries, .. } => (*rows, entries.len()),
                     _ => (1, 1),
                 };
                 let size = if way == Some(1) { rows } else { all / rows.max(1) };
@@ -315,12 +487,24 @@ impl<'b> ScriptWorkspace<'b> {
                         .ok_or_else(|| Problem::new(Code::Foreign, &one.span, "this is no size", "this"))
                 };
                 let rows = size(&sizes[0])?;
-                let columns = size(&sizes[sizes.len() - 1])?;
+                // one number makes a square matrix, and a vector in numpy
+                let is_vector = is_numpy && sizes.len() == 1;
+                let columns = if is_vector { 1 } else { size(&sizes[sizes.len() - 1])? };
                 let count = rows.saturating_mul(columns);
                 if count > MOST_ENTRIES {
                     return Err(Problem::new(Code::Foreign, span, "a matrix of too many entries", "this"));
                 }
-                Ok(ScriptValue::Many { rows, entries: vec![value; count] })
+                let form = match (is_vector, is_numpy) {
+                    (true, _) => Form::Vector,
+                    (_, true) => Form::Array,
+                    _ => Form::Matrix,
+                };
+                Ok(ScriptValue::Many { rows, entries: vec![value; count], form })
+            }
+            ("sym", [Syntax { kind: SyntaxKind::Text(text), span }, rest @ ..])
+                if self.dialect == Dialect::Matlab =>
+            {
+                self.symbols_by_size(text.trim(), rest, span)
             }
             ("Symbol" | "sym", [Syntax { kind: SyntaxKind::Text(text), span }, ..]) => {
                 self.symbol(text.trim(), span)
@@ -334,7 +518,7 @@ impl<'b> ScriptWorkspace<'b> {
                     .concat();
                 Ok(match <[_; 1]>::try_from(entries) {
                     Ok([one]) => ScriptValue::One(one),
-                    Err(entries) => ScriptValue::Many { rows: entries.len(), entries },
+                    Err(entries) => ScriptValue::Many { rows: entries.len(), entries, form: Form::List },
                 })
             }
             ("Rational", [top, bottom]) => {
@@ -361,17 +545,80 @@ impl<'b> ScriptWorkspace<'b> {
         }
     }
 
+    /// `sym('k')`, `sym('k', [2 1])`, `sym('1/2')` of MATLAB.
+    fn symbols_by_size(&mut self, text: &str, rest: &[Syntax], span: &Span) -> Valued {
+        let refused = |message: String| {
+            Problem::new(Code::Foreign, span, message, "this")
+                .help("a symbol is declared by its name: sym('k')")
+        };
+        if !text.starts_with(|c: char| c.is_alphabetic())
+            || !text.chars().all(|c| c.is_alphanumeric() || c == '_')
+        {
+            // a number as a text is that number exactly
+            let (top, bottom) = text.split_once('/').unwrap_or((text, "1"));
+            let number = |text: &str| ForeignExpr::number(text.trim(), span).ok();
+            return match number(top).zip(number(bottom)) {
+                Some((top, bottom)) => match (top.as_number(), bottom.as_number()) {
+                    (Some(top), Some(bottom)) => functions::fraction(top, bottom, span)
+                        .map(ScriptValue::One)
+                        .ok_or_else(|| refused(format!("'{text}' is no number"))),
+                    _ => Err(refused(format!("'{text}' is no number"))),
+                },
+                None => Err(refused(format!("'{text}' is no name of a symbol"))),
+            };
+        }
+        if let Some(number) = constant(text, span).filter(|_| text == "pi") {
+            return Ok(ScriptValue::One(number));
+        }
+        let sizes = match rest.first().map(|first| &first.kind) {
+            None | Some(SyntaxKind::Text(_)) => return self.symbol(text, span),
+            Some(_) => match self.value(&rest[0])? {
+                ScriptValue::One(one) => vec![one.clone(), one],
+                ScriptValue::Many { entries, .. } => entries,
+                ScriptValue::Else => Vec::new(),
+            },
+        };
+        let sizes: Option<Vec<usize>> =
+            sizes.iter().map(|one| self.whole(one).and_then(|size| usize::try_from(size).ok())).collect();
+        let Some([rows, columns]) = sizes.and_then(|sizes| <[usize; 2]>::try_from(sizes).ok()) else {
+            return Err(refused("this is no size of a matrix of symbols".to_owned()));
+        };
+        if rows.saturating_mul(columns) > MOST_ENTRIES {
+            return Err(refused("a matrix of too many symbols".to_owned()));
+        }
+        let mut entries = Vec::new();
+        for row in 1..=rows {
+            for column in 1..=columns {
+                let name = match (rows, columns) {
+                    (1, _) => format!("{text}{column}"),
+                    (_, 1) => format!("{text}{row}"),
+                    _ => format!("{text}{row}_{column}"),
+                };
+                entries.extend(self.symbol(&name, span)?.entries().unwrap_or_default());
+            }
+        }
+        Ok(match (rows, columns) {
+            (1, 1) => entries.pop().map_or(ScriptValue::Else, ScriptValue::One),
+            _ => matrix(rows, entries),
+        })
+    }
+
     /// `sym.Function('x')(t)`
     fn function_of_time(&mut self, syntax: &Syntax) -> Valued {
-        if let SyntaxKind::Call(callee, _) = &syntax.kind
+        if let SyntaxKind::Call(callee, arguments) = &syntax.kind
             && let Some(("Function", [Syntax { kind: SyntaxKind::Text(text), span }])) =
                 named_function(callee)
         {
+            let of = arguments.iter().map(|one| self.one(one)).collect::<Result<Vec<_>, _>>()?;
+            self.functions.insert(text.clone(), (of, syntax.span.clone()));
             return self.symbol(text, span);
         }
         Err(Problem::new(Code::Foreign, &syntax.span, "this call cannot be read", "this"))
     }
 }
+
+/// Functions of SymPy that change the form of an expression and not its value.
+const KEPT: [&str; 6] = ["factor", "collect", "together", "cancel", "sympify", "S"];
 
 /// Counts the names in an expression, or takes them back.
 fn count_names(counts: &mut BTreeMap<String, usize>, one: &ForeignExpr, more: bool) {
@@ -412,166 +659,4 @@ fn symbol_names(text: &str, span: &Span) -> Result<Vec<String>, Problem> {
         }
     }
     Ok(names)
-}
-
-/// One entry is a number.
-fn flat(value: ScriptValue, span: &Span) -> ScriptValue {
-    match value {
-        ScriptValue::One(one) => ScriptValue::One(ForeignExpr { span: span.clone(), ..one }),
-        other => other,
-    }
-}
-
-fn each(value: ScriptValue, of: impl Fn(ForeignExpr) -> ForeignExpr) -> ScriptValue {
-    match value {
-        ScriptValue::One(one) => ScriptValue::One(of(one)),
-        ScriptValue::Many { rows, entries } => {
-            ScriptValue::Many { rows, entries: entries.into_iter().map(of).collect() }
-        }
-        ScriptValue::Else => ScriptValue::Else,
-    }
-}
-
-fn unlike(span: &Span) -> Problem {
-    Problem::new(Code::Foreign, span, "matrices of these sizes do not go together", "here")
-        .help("write the elements out")
-}
-
-/// A sum that goes on with another term: sums stay flat, however long they are.
-fn sum_of(left: ForeignExpr, right: ForeignExpr, subtracted: bool) -> ForeignExpr {
-    match left {
-        // a sum in brackets is a term as well: adding to it changes nothing
-        ForeignExpr { kind: ForeignKind::Sum(mut terms), span } => {
-            let span = span.start..right.span.end.max(span.end);
-            terms.push((subtracted, right));
-            ForeignExpr::new(ForeignKind::Sum(terms), &span)
-        }
-        left if subtracted => left.minus(right),
-        left => left.plus(right),
-    }
-}
-
-fn product_of(left: ForeignExpr, right: ForeignExpr, divided: bool) -> ForeignExpr {
-    match left {
-        ForeignExpr { kind: ForeignKind::Product(mut factors), span } => {
-            let span = span.start..right.span.end.max(span.end);
-            factors.push((divided, right));
-            ForeignExpr::new(ForeignKind::Product(factors), &span)
-        }
-        left if divided => left.over(right),
-        left => left.times(right),
-    }
-}
-
-fn entrywise(left: ScriptValue, right: ScriptValue, subtracted: bool, span: &Span) -> Valued {
-    Ok(match (left, right) {
-        (ScriptValue::One(a), ScriptValue::One(b)) => ScriptValue::One(sum_of(a, b, subtracted)),
-        (ScriptValue::Many { rows, entries }, ScriptValue::Many { rows: other, entries: right })
-            if rows == other && entries.len() == right.len() =>
-        {
-            let entries = entries.into_iter().zip(right).map(|(a, b)| sum_of(a, b, subtracted)).collect();
-            ScriptValue::Many { rows, entries }
-        }
-        (ScriptValue::Many { rows, entries }, ScriptValue::One(b)) => {
-            let entries = entries.into_iter().map(|a| sum_of(a, b.clone(), subtracted)).collect();
-            ScriptValue::Many { rows, entries }
-        }
-        (ScriptValue::One(a), ScriptValue::Many { rows, entries }) => {
-            let entries = entries.into_iter().map(|b| sum_of(a.clone(), b, subtracted)).collect();
-            ScriptValue::Many { rows, entries }
-        }
-        _ => return Err(unlike(span)),
-    })
-}
-
-fn multiplied(left: ScriptValue, right: ScriptValue, divided: bool, span: &Span) -> Valued {
-    Ok(match (left, right) {
-        (ScriptValue::One(a), ScriptValue::One(b)) => ScriptValue::One(product_of(a, b, divided)),
-        (ScriptValue::Many { rows, entries }, ScriptValue::One(b)) => {
-            let entries = entries.into_iter().map(|a| product_of(a, b.clone(), divided)).collect();
-            ScriptValue::Many { rows, entries }
-        }
-        (ScriptValue::One(a), ScriptValue::Many { rows, entries }) if !divided => {
-            let entries = entries.into_iter().map(|b| product_of(a.clone(), b, false)).collect();
-            ScriptValue::Many { rows, entries }
-        }
-        (ScriptValue::Many { rows, entries: a }, ScriptValue::Many { rows: inner, entries: b })
-            if !divided && rows > 0 && inner > 0 && a.len() == rows * inner =>
-        {
-            let columns = b.len() / inner;
-            if rows.saturating_mul(columns).saturating_mul(inner) > MOST_ENTRIES {
-                return Err(Problem::new(
-                    Code::Foreign,
-                    span,
-                    "a product of matrices that are too large",
-                    "this",
-                ));
-            }
-            let mut entries = Vec::new();
-            for row in 0..rows {
-                for column in 0..columns {
-                    let mut terms =
-                        (0..inner).map(|k| a[row * inner + k].clone().times(b[k * columns + column].clone()));
-                    let Some(first) = terms.next() else { return Err(unlike(span)) };
-                    entries.push(terms.fold(first, |sum, term| sum_of(sum, term, false)));
-                }
-            }
-            match (rows, columns) {
-                (1, 1) => ScriptValue::One(entries.remove(0)),
-                _ => ScriptValue::Many { rows, entries },
-            }
-        }
-        _ => return Err(unlike(span)),
-    })
-}
-
-fn transposed(value: ScriptValue) -> ScriptValue {
-    match value {
-        ScriptValue::Many { rows, entries } if rows > 0 => {
-            let columns = entries.len() / rows;
-            let at = |row: usize, column: usize| entries[row * columns + column].clone();
-            let turned = (0..columns).flat_map(|column| (0..rows).map(move |row| (row, column)));
-            let entries = turned.map(|(row, column)| at(row, column)).collect();
-            ScriptValue::Many { rows: columns, entries }
-        }
-        other => other,
-    }
-}
-
-/// A matrix of blocks.
-fn stacked(rows: Vec<Vec<ScriptValue>>, span: &Span) -> Valued {
-    let (mut height, mut width, mut entries) = (0, None, Vec::new());
-    for row in rows {
-        let blocks: Vec<(usize, Vec<ForeignExpr>)> = row
-            .into_iter()
-            .map(|block| match block {
-                ScriptValue::One(one) => Ok((1, vec![one])),
-                ScriptValue::Many { rows, entries } => Ok((rows, entries)),
-                ScriptValue::Else => {
-                    Err(Problem::new(Code::Foreign, span, "a matrix of what is no number", "this"))
-                }
-            })
-            .collect::<Result<_, _>>()?;
-        let blocks: Vec<(usize, Vec<ForeignExpr>)> =
-            blocks.into_iter().filter(|(_, entries)| !entries.is_empty()).collect();
-        let Some(tall) = blocks.first().map(|(rows, _)| *rows) else { continue };
-        if blocks.iter().any(|(rows, _)| *rows != tall) {
-            return Err(unlike(span));
-        }
-        let columns: usize = blocks.iter().map(|(rows, entries)| entries.len() / rows).sum();
-        if *width.get_or_insert(columns) != columns {
-            return Err(unlike(span));
-        }
-        for line in 0..tall {
-            for (rows, block) in &blocks {
-                let wide = block.len() / rows;
-                entries.extend_from_slice(&block[line * wide..(line + 1) * wide]);
-            }
-        }
-        height += tall;
-        if entries.len() > MOST_ENTRIES {
-            return Err(Problem::new(Code::Foreign, span, "a matrix of too many entries", "this"));
-        }
-    }
-    Ok(ScriptValue::Many { rows: height, entries })
 }

@@ -66,6 +66,8 @@ impl Script<'_> {
         }
         if numbers.is_empty() {
             self.skip_loop(parser);
+            let why = Problem::new(Code::Foreign, &variable.span, "this loop has no steps", "this");
+            self.workspace.break_name(&variable.text, why.help("nothing has a value by it"));
         }
         if !parser.peek().is_word("end") {
             return Err(parser.unexpected("'end'"));
@@ -89,6 +91,15 @@ impl Script<'_> {
         };
         let mut numbers = Vec::new();
         for part in parts.iter().cloned() {
+            // a loop goes through columns
+            if let ScriptValue::Many { rows, entries, .. } = &part
+                && *rows > 1
+            {
+                let message =
+                    format!("a loop goes through columns, and this has {} rows", rows.min(&entries.len()));
+                return Err(Problem::new(Code::Foreign, &first.span, message, "these")
+                    .help("write the numbers as a row: 1:3, or [1 2 3]"));
+            }
             let entries = part.entries().ok_or_else(no)?;
             numbers.push(
                 entries

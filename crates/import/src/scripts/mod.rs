@@ -1,6 +1,7 @@
 //! Model files of StrikePy (Python) and STRIKE-GOLDD (MATLAB): assignments to `x`, `p`, `h`, `f`, `u` and `w`. They are read, and
 //! never run.
 
+mod lists;
 mod loops;
 
 use super::expression::{ForeignExpr, ForeignKind, Span};
@@ -12,7 +13,7 @@ use super::script::{
 use dashu::rational::RBig;
 use palmistry_io::foreign::Budget;
 use palmistry_lang::{Code, Problem};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The variables by which these programs know a model.
 const VARIABLES: [&str; 8] = ["x", "p", "h", "f", "u", "w", "ics", "known_ics"];
@@ -35,6 +36,9 @@ const IGNORED: [&str; 14] = [
     "pretty",
 ];
 
+/// Functions that run a text as a part of the script.
+const RUNS: [&str; 6] = ["exec", "eval", "evalc", "evalin", "assignin", "feval"];
+
 /// Words that begin what is more than assignments.
 const CONTROL: [&str; 17] = [
     "for", "while", "if", "switch", "function", "try", "parfor", "def", "class", "with", "return", "lambda",
@@ -50,7 +54,7 @@ pub(super) fn read(
 ) -> Result<ForeignModel, Problem> {
     let (words, comments) = tokens(text, dialect, budget)?;
     let mut script = Script {
-        workspace: ScriptWorkspace::new(budget),
+        workspace: ScriptWorkspace::new(budget, dialect),
         dialect,
         saved: None,
         title: None,
@@ -59,6 +63,9 @@ pub(super) fn read(
         begin: None,
         deep: 0,
         repetitions: 0,
+        at_save: None,
+        aliases: BTreeMap::new(),
+        groups: 0,
     };
     script.workspace.plain.extend(VARIABLES.map(str::to_owned));
     script.all(&words)?;
@@ -66,6 +73,11 @@ pub(super) fn read(
         let message = format!("the file saves no model '{wanted}'");
         return Err(Problem::new(Code::Foreign, &(0..text.len().min(1)), message, "the file")
             .help("models are named by what 'save' calls them"));
+    }
+    if let Some(wanted) = script.which.as_ref().filter(|wanted| script.saves == 0 && *wanted != "1") {
+        let message = format!("the file has no model '{wanted}'");
+        return Err(Problem::new(Code::Foreign, &(0..text.len().min(1)), message, "the file")
+            .help("it has one model: leave --model out"));
     }
     let mut model = script.model(text)?;
     model.title = script.title.clone();
@@ -87,6 +99,11 @@ struct Script<'b> {
     /// How many loops are open, and how many statements were read within loops.
     deep: usize,
     repetitions: u64,
+    /// What the variables of the model are where they are saved: what is assigned below belongs to another one.
+    at_save: Option<BTreeMap<&'static str, ScriptValue>>,
+    /// Names of Python that stand for one list, by a number of that list.
+    aliases: BTreeMap<String, u64>,
+    groups: u64,
 }
 
 impl Script<'_> {
@@ -123,9 +140,16 @@ impl Script<'_> {
             .help("write the model as plain assignments to x, p, h, f, u and w"));
         }
         let ignored = IGNORED.iter().any(|name| word.is_word(name));
-        if matches!(word.text.as_str(), "import" | "from") && self.dialect == Dialect::Python
-            || ignored && !parser.ahead(1).is("=")
-        {
+        if word.is_word("from") && self.dialect == Dialect::Python {
+            self.taken_from(parser);
+            return Ok(());
+        }
+        if RUNS.iter().any(|name| word.is_word(name)) && parser.ahead(1).is("(") {
+            let message = format!("'{}' is not read: nothing of a script is run", word.text);
+            return Err(Problem::new(Code::Foreign, &word.span, message, "this")
+                .help("write what it does as plain assignments to x, p, h, f, u and w"));
+        }
+        if word.is_word("import") && self.dialect == Dialect::Python || ignored && !parser.ahead(1).is("=") {
             self.skip_line(parser);
             return Ok(());
         }
@@ -147,6 +171,11 @@ impl Script<'_> {
             targets.push(parser.expression()?);
         }
         if !parser.take("=") {
+            if let [only] = targets.as_slice()
+                && self.changed_in_place(only)?
+            {
+                return Ok(());
+            }
             return match targets.as_slice() {
                 // a call for its own sake changes nothing that is read here
                 [only] if named_function(only).is_some_and(|(name, _)| !VARIABLES.contains(&name)) => Ok(()),
@@ -156,13 +185,47 @@ impl Script<'_> {
         }
         self.begin.get_or_insert(targets[0].span.start);
         let right = self.right_side(parser)?;
-        self.assigned(&targets, &right)
+        // a = b = 0
+        let mut chain = vec![targets];
+        let mut right = right;
+        while self.dialect == Dialect::Python && parser.take("=") {
+            chain.push(match right.kind {
+                SyntaxKind::List(list) if !self.is_bracketed(&right.span, &list) => list,
+                kind => vec![Syntax { kind, span: right.span }],
+            });
+            right = self.right_side(parser)?;
+        }
+        let is_chain = chain.len() > 1;
+        let first = chain
+            .first()
+            .and_then(|targets| targets.first())
+            .and_then(|one| one.as_name())
+            .map(str::to_owned);
+        for (at, targets) in chain.iter().enumerate() {
+            match (&first, targets.as_slice()) {
+                // one list by two names
+                (Some(first), [_]) if at > 0 => {
+                    let same = Syntax { kind: SyntaxKind::Name(first.clone()), span: right.span.clone() };
+                    self.assigned(targets, &same)?;
+                }
+                _ if is_chain && at > 0 || is_chain && targets.len() > 1 => {
+                    return Err(parser.unexpected("one assignment at a time"));
+                }
+                _ => self.assigned(targets, &right)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a list has brackets of its own: its elements begin behind its begin.
+    fn is_bracketed(&self, span: &Span, list: &[Syntax]) -> bool {
+        list.first().is_none_or(|first| first.span.start > span.start)
     }
 
     /// An expression, or several with commas between them in Python.
     fn right_side(&mut self, parser: &mut Parser<'_>) -> Result<Syntax, Problem> {
         let first = parser.expression()?;
-        if parser.peek().is("=") {
+        if parser.peek().is("=") && self.dialect != Dialect::Python {
             return Err(parser.unexpected("one assignment at a time"));
         }
         if self.dialect != Dialect::Python || !parser.peek().is(",") {
@@ -230,7 +293,15 @@ impl Script<'_> {
         if self.which.as_ref().is_some_and(|which| !is_asked(which)) {
             return Ok(());
         }
-        self.title = name;
+        self.title.clone_from(&name);
+        // what is assigned below belongs to other models
+        let mut values = BTreeMap::new();
+        for variable in VARIABLES {
+            if let Some(value) = self.workspace.get(variable) {
+                values.insert(variable, value?);
+            }
+        }
+        self.at_save = Some(values);
         let names: BTreeSet<String> =
             names.into_iter().skip(1).filter(|name| !name.starts_with('-')).collect();
         if !names.is_empty() {
@@ -238,15 +309,24 @@ impl Script<'_> {
         }
         if self.which.is_some() {
             // what stands below belongs to other models
+            let asked_by_name = self.which != Some(count);
             while !parser.at_end() {
-                parser.next();
+                let word = parser.next();
+                let again = (1..3).any(|by| {
+                    matches!(&parser.ahead(by - 1).kind, TokenKind::Text(text) if Some(text) == name.as_ref())
+                });
+                if asked_by_name && word.is_word("save") && again {
+                    let message = format!("the file saves several models '{}'", name.unwrap_or_default());
+                    return Err(Problem::new(Code::Foreign, &word.span, message, "another one")
+                        .help("say which with --model NUMBER"));
+                }
             }
         }
         Ok(())
     }
 
     /// `f(2) = ...` in MATLAB, `f[1] = ...` in Python: the name of the vector or matrix, and the place of the element among its entries.
-    fn element(&mut self, target: &Syntax) -> Result<Option<(String, usize)>, Problem> {
+    fn element(&mut self, target: &Syntax) -> Result<Option<(String, usize, bool)>, Problem> {
         let (vector, indices, from) = match (&target.kind, self.dialect) {
             (SyntaxKind::Call(vector, indices), Dialect::Matlab) => (vector, indices, 1),
             (SyntaxKind::Index(vector, indices), Dialect::Python) => (vector, indices, 0),
@@ -259,26 +339,28 @@ impl Script<'_> {
             numbers.push(number + 1 - from);
         }
         let place = self.workspace.element(name, &numbers, self.dialect == Dialect::Matlab);
-        Ok(place.map(|place| (name.to_owned(), place)))
+        let down = matches!(numbers.as_slice(), [row, 1] if *row > 1);
+        Ok(place.map(|place| (name.to_owned(), place, down)))
     }
 
     fn assigned(&mut self, targets: &[Syntax], right: &Syntax) -> Result<(), Problem> {
         if let [target] = targets
             && target.as_name().is_none()
-            && let Some((name, at)) = self.element(target)?
+            && let Some((name, at, down)) = self.element(target)?
         {
             match self.workspace.value(right).map(ScriptValue::entries) {
                 Ok(Some(entries)) if entries.len() == 1 => {
                     for value in entries {
-                        self.workspace.assign_element(&name, at, value)?;
+                        self.workspace.assign_element(&name, at, down, value)?;
                     }
+                    self.share(&name);
                 }
                 Ok(_) => {
                     let why =
                         Problem::new(Code::Foreign, &right.span, "an element is one number", "this is none");
-                    self.workspace.break_name(&name, why);
+                    self.break_list(&name, &why);
                 }
-                Err(why) => self.workspace.break_name(&name, why),
+                Err(why) => self.break_list(&name, &why),
             }
             return Ok(());
         }
@@ -293,7 +375,10 @@ impl Script<'_> {
             })
             .collect::<Result<Vec<_>, _>>()?;
         match (self.workspace.value(right), names.as_slice()) {
-            (Ok(value), [name]) => self.workspace.assign(name, value),
+            (Ok(value), [name]) => {
+                self.name_list(name, right, &value);
+                self.workspace.assign(name, value);
+            }
             (Ok(value), names) => {
                 let entries = value.entries().unwrap_or_default();
                 if entries.len() != names.len() {
@@ -322,6 +407,9 @@ impl Script<'_> {
     fn vector(&self, name: &str) -> Result<Option<Vec<ForeignExpr>>, Problem> {
         if self.saved.as_ref().is_some_and(|saved| !saved.contains(name)) {
             return Ok(None);
+        }
+        if let Some(values) = &self.at_save {
+            return Ok(values.get(name).cloned().and_then(ScriptValue::entries));
         }
         match self.workspace.get(name) {
             None => Ok(None),
@@ -364,6 +452,11 @@ impl Script<'_> {
                 )
                 .help("two variables of the script may be one symbol: give each a symbol of its own")
             };
+            if self.workspace.has_definition(name) {
+                let message = format!("'{name}' has a value above, and is no symbol");
+                return Err(Problem::new(Code::Foreign, span, message, "this")
+                    .help("x, p, u and w have symbols alone: take it out, or do not assign to it"));
+            }
             if seen.insert(name.to_owned()) { Ok(()) } else { Err(twice()) }
         };
         for ((name, span), rate) in states.iter().zip(rates) {
@@ -393,6 +486,7 @@ impl Script<'_> {
         model.declare_others(false);
         let others: Vec<&str> =
             model.constants[before..].iter().map(|constant| constant.name.as_str()).collect();
+        self.look_at_others(&model, &others)?;
         if !others.is_empty() {
             model
                 .remarks
@@ -406,6 +500,51 @@ impl Script<'_> {
         }
         self.initial_values(&mut model);
         Ok(model)
+    }
+
+    /// Refuses time and functions among what is in none of the lists.
+    fn look_at_others(&self, model: &ForeignModel, others: &[&str]) -> Result<(), Problem> {
+        let mut listed: BTreeSet<&str> = model.states.iter().map(|state| state.name.as_str()).collect();
+        listed.extend(model.known_inputs.iter().chain(&model.unknown_inputs).map(String::as_str));
+        let parameters = model.constants.iter().map(|constant| constant.name.as_str());
+        let place = |name: &str| {
+            let mut found = 0..0;
+            let mut look = |value: &ForeignExpr| {
+                value.names(&mut |own, span| {
+                    if own == name && found.is_empty() {
+                        found = span.clone();
+                    }
+                });
+            };
+            model.states.iter().for_each(|state| look(&state.rate));
+            model.outputs.iter().for_each(|output| look(&output.value));
+            model.definitions.iter().for_each(|(_, value)| look(value));
+            found
+        };
+        if others.contains(&"t") {
+            return Err(Problem::new(Code::Foreign, &place("t"), "'t' is time, and no constant", "this").help(
+                "make it a state with the rate 1, in x and in f, and measure it, in h; a constant has another name",
+            ));
+        }
+        let all: BTreeSet<&str> = listed.iter().copied().chain(parameters).collect();
+        for (name, (of, span)) in
+            self.workspace.functions.iter().filter(|(name, _)| all.contains(name.as_str()))
+        {
+            let mut of_states = false;
+            of.iter().for_each(|one| one.names(&mut |own, _| of_states |= all.contains(own) && own != "t"));
+            if of_states {
+                let message = format!("'{name}' is a function that nothing defines");
+                return Err(
+                    Problem::new(Code::Foreign, span, message, "this").help("write its formula in its place")
+                );
+            }
+            if !listed.contains(name.as_str()) && others.contains(&name.as_str()) {
+                let message = format!("'{name}' is a function of time, and in none of x, u and w");
+                return Err(Problem::new(Code::Foreign, span, message, "this")
+                    .help("known inputs are in u, unknown ones in w"));
+            }
+        }
+        Ok(())
     }
 
     /// States with a known initial condition: the programs use them only on request, so they stand in a comment.
