@@ -5,6 +5,7 @@
 //!
 //! Reference: L. Schmiester et al., PEtab: interoperable specification of parameter estimation problems in systems biology, PLoS Comput. Biol. 17, 2021.
 
+mod names;
 mod read;
 mod scene;
 mod tables;
@@ -212,6 +213,8 @@ struct Reading<'f> {
     conditions: BTreeMap<String, Vec<(String, String)>>,
     observables: Vec<(String, Observable)>,
     measurements: Vec<Measurement>,
+    /// What a reader of the new files has to know.
+    remarks: Vec<String>,
 }
 
 /// Whether a text is a number.
@@ -234,11 +237,16 @@ impl<'f> Reading<'f> {
             conditions: BTreeMap::new(),
             observables: Vec::new(),
             measurements: Vec::new(),
+            remarks: Vec::new(),
         };
         reading.read_parameters()?;
         reading.read_conditions()?;
         reading.read_observables()?;
         reading.read_measurements()?;
+        reading.look_for_time();
+        reading.look_at_names()?;
+        reading.free_constants(&started.assigned);
+        reading.size_compartments(started.by_size);
         Ok(reading)
     }
 
@@ -270,6 +278,7 @@ impl<'f> Reading<'f> {
 
     /// What tables say of constants of the model; outputs by the observables.
     fn put_tables_in(&mut self) {
+        self.keep_off_cases();
         let by_name: BTreeMap<&str, &Parameter> =
             self.parameters.iter().map(|(name, one)| (name.as_str(), one)).collect();
         for constant in &mut self.model.constants {
@@ -315,8 +324,9 @@ impl<'f> Reading<'f> {
             let value = ForeignExpr::name(clock, &(0..0));
             self.model.outputs.push(ForeignOutput { name: None, value });
         }
-        self.model.remarks =
-            vec!["initial values stand in the scene: the rank is decided for unknown ones".to_owned()];
+        self.remarks
+            .insert(0, "initial values stand in the scene: the rank is decided for unknown ones".to_owned());
+        self.model.remarks = std::mem::take(&mut self.remarks);
     }
 
     /// Starts without definitions: those may be dropped from the file.

@@ -61,6 +61,18 @@ impl Reading<'_> {
                     true => Some([table.number(row, "lowerBound")?, table.number(row, "upperBound")?]),
                     false => None,
                 };
+                if let Some([low, high]) = bounds {
+                    if scale != "linear" && low <= 0.0 {
+                        let message = format!("the lower bound {low} of '{name}' has no logarithm");
+                        let help = format!("a parameter on the scale {scale} has bounds above zero");
+                        return Err(table.error(row, message, help));
+                    }
+                    if low > high {
+                        let message =
+                            format!("the lower bound {low} of '{name}' is above the upper one, {high}");
+                        return Err(table.error(row, message, "lowerBound is the smaller one"));
+                    }
+                }
                 let nominal = table.cell(row, "nominalValue").map(str::to_owned);
                 if let Some(text) = nominal.as_deref().filter(|text| !is_number(text)) {
                     return Err(table.error(

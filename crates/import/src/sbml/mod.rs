@@ -24,6 +24,10 @@ pub(super) struct Started {
     pub model: ForeignModel,
     /// By state, where the file says so: a formula of constants, definitions and the initial values of other states. That of time is zero.
     pub starts: Vec<(String, ForeignExpr)>,
+    /// Species whose initial value needs the size of their compartment: the species, the compartment, and the value by its name.
+    pub by_size: Vec<(String, String, ForeignExpr)>,
+    /// Constants that are definitions because an initial assignment says what they are.
+    pub assigned: BTreeSet<String>,
 }
 
 /// Reads a model.
@@ -57,12 +61,14 @@ pub(super) fn read_started(text: &str, budget: &Budget) -> Result<Started, Probl
     refuse(model)?;
     let reading = Reading::of(model, level == "3", budget)?;
     let given = reading.starts();
+    let by_size = reading.by_size();
+    let assigned = reading.initial_values.iter().map(|(id, _)| id.clone()).collect();
     let model = reading.model(model)?;
     let start = |name: &String| Some((name.clone(), given.get(name)?.clone()));
     let mut starts: Vec<(String, ForeignExpr)> =
         model.states.iter().filter_map(|state| start(&state.name)).collect();
     starts.extend(model.clock.iter().map(|clock| (clock.clone(), ForeignExpr::integer(0, &(0..0)))));
-    Ok(Started { model, starts })
+    Ok(Started { model, starts, by_size, assigned })
 }
 
 /// What changes the meaning of a model and is not read.
@@ -280,6 +286,17 @@ impl<'b> Reading<'b> {
         }
         starts.extend(self.initial_values.iter().cloned());
         starts
+    }
+
+    /// The species whose initial value is an amount by the size of its compartment, or the other way about.
+    fn by_size(&self) -> Vec<(String, String, ForeignExpr)> {
+        let assigned = |id: &String| self.initial_values.iter().any(|(own, _)| own == id);
+        let of = |one: &Species| {
+            let value = self.beginning(one, |size| Some(ForeignExpr::name(size, &(0..0))))?;
+            let needs_size = value.as_number().is_none() && !assigned(&one.id);
+            needs_size.then(|| (one.id.clone(), one.compartment.clone(), value))
+        };
+        self.species.iter().filter_map(of).collect()
     }
 
     fn math(&self, node: Node<'_, '_>) -> Result<ForeignExpr, Problem> {

@@ -271,7 +271,9 @@ impl Reading<'_> {
                 '√' => "a root is written sqrt(x)",
                 '°' => "angles are in radians: write x*pi/180",
                 '%' => "a comment begins with '#'; a percentage is written as a decimal",
-                '\\' | '$' => "LaTeX is not read: write an equation as x' = -k*x",
+                '\\' | '$' if self.dialect == Dialect::Printed => {
+                    "LaTeX is not read: write an equation as x' = -k*x"
+                }
                 _ => "take it out, or write what it stands for",
             };
             return Err(Problem::new(
