@@ -2,9 +2,9 @@
 //! that is more than a few letters, or has cases itself, becomes a definition first. What is written then grows as the file does: nested cases
 //! would double with every step.
 
-use super::expression::{ForeignExpr, ForeignKind, ForeignOrder};
+use super::expression::{ForeignExpr, ForeignKind};
 use super::model::{ForeignConstant, ForeignModel, ForeignRate};
-use super::print::{Written, without_case};
+use super::print::{Written, same, without_case};
 use dashu::base::BitTest;
 use dashu::rational::RBig;
 use palmistry_io::foreign::Budget;
@@ -119,6 +119,10 @@ impl Writing<'_> {
             return None;
         }
         let value = |side: &ForeignExpr| side.exact(&|name| self.values.get(name).cloned());
+        if same(&sides.0, &sides.1) {
+            // whatever they are
+            return Some(order.of_equals(values));
+        }
         if value(&sides.0)? != value(&sides.1)? {
             return None;
         }
@@ -136,10 +140,7 @@ impl Writing<'_> {
                 self.remarks.push(remark);
             }
         }
-        Some(match order {
-            ForeignOrder::AtMost | ForeignOrder::AtLeast => &values.0,
-            ForeignOrder::Less | ForeignOrder::Greater => &values.1,
-        })
+        Some(order.of_equals(values))
     }
 
     fn part(&mut self, of: &ForeignExpr) -> Result<Part, Problem> {

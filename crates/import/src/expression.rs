@@ -33,6 +33,16 @@ pub enum ForeignOrder {
     AtLeast,
 }
 
+impl ForeignOrder {
+    /// Which of two values a case has whose sides are equal.
+    pub(super) fn of_equals(self, values: &(ForeignExpr, ForeignExpr)) -> &ForeignExpr {
+        match self {
+            ForeignOrder::AtMost | ForeignOrder::AtLeast => &values.0,
+            ForeignOrder::Less | ForeignOrder::Greater => &values.1,
+        }
+    }
+}
+
 /// What a foreign expression is.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ForeignKind {

@@ -97,8 +97,7 @@ impl Reading<'_> {
             for row in &table.rows {
                 let id = table.needed(row, "observableId")?;
                 let Some((_, one)) = self.observables.iter().find(|(own, _)| own == id) else { continue };
-                // without measurements nothing says what its own parameters are, and nothing has to
-                let is_measured = self.measurements.iter().any(|one| one.observable == id);
+                // of its own parameters measurements say what they are, see below
                 let is_own = |name: &str| {
                     let stem =
                         name.strip_prefix("observableParameter").or(name.strip_prefix("noiseParameter"));
@@ -111,7 +110,7 @@ impl Reading<'_> {
                             || parameters.contains(name)
                             || given.contains(name)
                             || columns.contains(name)
-                            || !is_measured && is_own(name)
+                            || is_own(name)
                             || is_noise && self.observables.iter().any(|(own, _)| own == name);
                         if !known && bad.is_none() {
                             bad = Some(name.to_owned());

@@ -100,7 +100,7 @@ impl ScriptWorkspace<'_> {
             return Err(Problem::new(Code::Foreign, &span, format!("'{name}' has no such element"), "this")
                 .help("elements are counted from 0; a list grows by 'append'"));
         }
-        let is_column = down || rows == entries.len() && rows > 1;
+        let is_column = down && entries.len() <= 1 || rows == entries.len() && rows > 1;
         if place >= entries.len() {
             entries.resize(place + 1, ForeignExpr::integer(0, &span));
         }

@@ -1,0 +1,233 @@
+//! Foreign files that cannot be read for what they mean are refused: at the right place, with what to write.
+
+use palmistry_import::{ImportQuestion, import};
+
+/// What has to be said, where (line and column), and a word of the advice.
+type Case = (&'static str, &'static str, &'static str, (usize, usize), &'static str);
+
+fn all_refused(cases: &[Case]) {
+    for (name, text, message, place, advice) in cases {
+        match import(name, text, &ImportQuestion::default()) {
+            Ok(read) => panic!("{text}\nis read as\n{}", read.text),
+            Err(why) => {
+                let help = why.help.clone().unwrap_or_default();
+                assert!(why.message.contains(message), "{text}\n{}", why.message);
+                assert_eq!(why.line_and_column(), *place, "{text}\n{}", why.message);
+                assert!(help.contains(advice), "{text}\n{}; {help}", why.message);
+            }
+        }
+    }
+}
+
+#[test]
+fn formulas() {
+    all_refused(&[
+        (
+            "a.txt",
+            "Eq(Derivative(x(t), t), -k*x(t) + u(t))",
+            "'u' is a function of time, and has no equation",
+            (1, 35),
+            "inputs: u",
+        ),
+        (
+            "a.txt",
+            "[diff(x1(t), t) = -k*x1(t) + u(t),\ny(t) = x1(t)]",
+            "'u' is a function of time",
+            (1, 30),
+            "inputs: u",
+        ),
+        ("a.txt", "x' = -k(t)*x", "'k' is a function of time", (1, 7), "a constant is written k"),
+        (
+            "a.txt",
+            "Eq(Derivative(x(t), (t, 2)), -w*x(t))",
+            "a second derivative",
+            (1, 4),
+            "x' = v and v' = ...",
+        ),
+        ("a.txt", "x'' = -x", "a second derivative", (1, 1), "x' = v"),
+        ("a.txt", "d2x/dt2 = -x", "a second derivative", (1, 1), "x' = v"),
+        (
+            "a.txt",
+            "dx/dt = -a*x + b*S(x - c)",
+            "the function 'S' has no counterpart",
+            (1, 18),
+            "what can be read",
+        ),
+        ("a.txt", "S' = r*S(1 - S/K)", "'S' is no function", (1, 8), "S*(...)"),
+        ("a.txt", "S' = -S(t - tau)", "delays are not read", (1, 7), "delays"),
+        ("a.txt", "x' = -k*x²", "'²' is no power", (1, 10), "x^2"),
+        ("a.txt", "x' = -e^(-x)", "'e' may be Euler's number", (1, 7), "exp"),
+        ("a.txt", "x' = x*I", "'I' may be the imaginary unit", (1, 8), "complex"),
+        ("a.txt", "x' = -k*x + sinx", "'sinx' may be a function of 'x'", (1, 13), "sin(x)"),
+        ("a.txt", "x' = 2x", "expected the end of the line", (1, 7), "'*'"),
+        (
+            "a.txt",
+            "states: x1, x2\nf = [x2, -k*x1]\ng = [0, 1]\nh = [x1]",
+            "nothing says what the vector 'g' is",
+            (3, 1),
+            "one of outputs h",
+        ),
+        ("a.txt", "x' = -k*x\noutputs: x, q", "'q' stands in no equation", (2, 13), "parameters: q"),
+        ("a.txt", "x' = -k*x\noutputs: x\nknown: kk", "'kk' stands in no equation", (3, 8), "perhaps 'k'"),
+        ("a.txt", "x' = -k*x\noutputs: x\nparameters: q", "'q' stands in no equation", (3, 13), "k, x"),
+        ("a.txt", "x' = -k*x + u\ninputs: v\noutputs: x", "'v' stands in no equation", (2, 9), "u"),
+    ]);
+}
+
+#[test]
+fn models_of_julia() {
+    all_refused(&[
+        (
+            "a.jl",
+            "@ODEmodel(x'(t) = -x(t) + sin(t), y(t) = x(t))",
+            "time stands by itself",
+            (1, 31),
+            "time'(t) = 1",
+        ),
+        ("a.jl", "@ODEmodel(x'(t) = x(t - 1), y(t) = x(t))", "delays are not read", (1, 19), "delays"),
+        ("a.jl", "@ODEmodel(x'(t) = π*x(t), y(t) = x(t))", "'π' is a number in Julia", (1, 19), "4*atan(1)"),
+        ("a.jl", "@ODEmodel(x'(t) = im*x(t), y(t) = x(t))", "'im' is a number in Julia", (1, 19), "complex"),
+        ("a.jl", "@ODEmodel(x'(t) = -x(t), y(t) = z(t))", "the output is 'z'", (1, 33), "formula"),
+        (
+            "a.jl",
+            "inv(v) = v^2\nm = @ODEmodel(x'(t) = inv(x(t)), y(t) = x(t))",
+            "'inv' is a function that the file defines",
+            (2, 23),
+            "formula",
+        ),
+        (
+            "a.jl",
+            "@parameters k\n@variables t x(t)\nD = Differential(t)\nS(v) = v\neqs = [D(x) ~ S(x)]",
+            "'S' is a function that the file defines",
+            (5, 15),
+            "formula",
+        ),
+        (
+            "a.jl",
+            "@parameters k\n@variables t x(t)\nD = Differential(t)\neqs = [D(x) ~ -k*x(t - 1)]",
+            "delays are not read",
+            (4, 18),
+            "delays",
+        ),
+        (
+            "a.jl",
+            "@parameters k\n@variables t S(t)\nD = Differential(t)\neqs = [D(S) ~ k*S(1 - S)]",
+            "something else stands in its bracket",
+            (4, 17),
+            "S*(...)",
+        ),
+        (
+            "a.jl",
+            "@parameters k\n@variables t x(t)\nD = Differential(t)\neqs = [log(x) ~ -k*x]",
+            "the left side is no derivative",
+            (4, 8),
+            "D(x)",
+        ),
+        (
+            "a.jl",
+            "@parameters k\n@variables t x(t) u(t)\nD = Differential(t)\neqs = [D(x) ~ -k*x + u]\nev = [[10.0] => [u ~ 3.0]]",
+            "events are not read",
+            (5, 20),
+            "jumps",
+        ),
+        (
+            "a.jl",
+            "@parameters k\n@variables t x(t) z(t)\nD = Differential(t)\na = [D(x) ~ -k*x]\nb = [D(z) ~ -z]\n@named s1 = ODESystem(a, t)\n@named s2 = ODESystem(b, t)",
+            "the file has 2 systems",
+            (7, 13),
+            "1 's1' of a, 2 's2' of b",
+        ),
+        (
+            "a.jl",
+            "@parameters k\n@variables t x(t)\nD = Differential(t)\neqs = [D(x) ~ -k*x]\npush!(eqs, D(x) ~ 3)",
+            "an equation outside of a list",
+            (5, 17),
+            "lists",
+        ),
+    ]);
+}
+
+#[test]
+fn scripts() {
+    all_refused(&[
+        (
+            "a.m",
+            "syms x1 a\nx = x1; p = a;\nf = S(x1 - a); h = x1;\n",
+            "the function 'S' has no counterpart",
+            (3, 5),
+            "what can be read",
+        ),
+        (
+            "a.m",
+            "syms x1 k\nx = x1; p = k; y = k;\nfor i = [1; 2; 3]\ny = y*i;\nend\nf = -x1*y; h = x1;\n",
+            "a loop goes through columns",
+            (3, 9),
+            "1:3",
+        ),
+        (
+            "a.m",
+            "syms x1 k\nx = x1; p = k;\nf = -k*x1; h = x1;\neval('f = k;')\n",
+            "'eval' is not read",
+            (4, 1),
+            "plain assignments",
+        ),
+        ("a.m", "syms x1 k t\nx = x1; p = k;\nf = -k*x1*sin(t); h = x1;\n", "'t' is time", (3, 15), "rate 1"),
+        (
+            "a.m",
+            "syms x1 k\nk = 3;\nx = x1; p = k;\nf = -k*x1; h = x1;\n",
+            "'k' has a value above",
+            (3, 13),
+            "symbols alone",
+        ),
+        (
+            "a.py",
+            "import sympy as sym\nx1, x2 = sym.symbols('x1 x2')\nx = [x1, x2]\nf = [x2, x1]\nh = [x1, x2]\nh.pop()\n",
+            "'h' is changed by 'pop'",
+            (6, 1),
+            "at once",
+        ),
+        (
+            "a.py",
+            "import sympy as sym\nx1 = sym.symbols('x1')\nx = [x1]\nf = [x1]\nh = [x1]\nexec('h = []')\n",
+            "'exec' is not read",
+            (6, 1),
+            "plain assignments",
+        ),
+        (
+            "a.py",
+            "import sympy as sym\nfrom mylib import S\nx1 = sym.symbols('x1')\nx = [x1]\nf = [S(x1)]\nh = [x1]\n",
+            "'S' comes from 'mylib'",
+            (5, 6),
+            "formula",
+        ),
+        (
+            "a.py",
+            "import sympy as sym\nx1 = sym.symbols('x1')\nmu = sym.Function('mu')(x1)\nx = [x1]\nf = [mu*x1]\nh = [x1]\n",
+            "'mu' is a function that nothing defines",
+            (3, 6),
+            "formula",
+        ),
+    ]);
+}
+
+/// What was asked for and is not there is said, whatever the format.
+#[test]
+fn questions() {
+    let ask = |name: &str, text: &str, question: ImportQuestion| {
+        import(name, text, &question).err().map(|why| why.message).unwrap_or_default()
+    };
+    let model = |name: &str| ImportQuestion { model: Some(name.to_owned()), ..ImportQuestion::default() };
+    let twice =
+        "ode = @ODEmodel(x'(t) = -a*x(t), y(t) = x(t))\node = @ODEmodel(x'(t) = -b*x(t), y(t) = x(t))";
+    assert_eq!(ask("a.jl", twice, model("ode")), "the file has several models 'ode'");
+    assert!(import("a.jl", twice, &model("2")).unwrap().text.contains("x' = -b*x"));
+    let two = "@parameters k\n@variables t x(t) z(t)\nD = Differential(t)\na = [D(x) ~ -k*x]\nb = [D(z) ~ -z]\n@named s1 = ODESystem(a, t)\n@named s2 = ODESystem(b, t)";
+    assert!(import("a.jl", two, &model("s2")).unwrap().text.contains("z' = -z"));
+    assert!(!import("a.jl", two, &model("s2")).unwrap().text.contains("x' ="));
+    assert_eq!(ask("a.txt", "x' = -k*x", model("3")), "the file has no model '3'");
+    assert_eq!(ask("a.m", "syms x1\nx = x1; f = x1; h = x1;", model("3")), "the file has no model '3'");
+    let outputs = ImportQuestion { outputs: vec!["q".to_owned()], ..ImportQuestion::default() };
+    assert!(ask("a.txt", "x' = -k*x", outputs).contains("'q' stands in no equation"));
+    let inputs = ImportQuestion { known_inputs: vec!["u".to_owned()], ..ImportQuestion::default() };
+    assert!(import("a.txt", "x' = -k*x + u(t)", &inputs).unwrap().text.contains("known u(t)"));
+}
