@@ -208,7 +208,7 @@ impl Script<'_> {
                     let same = Syntax { kind: SyntaxKind::Name(first.clone()), span: right.span.clone() };
                     self.assigned(targets, &same)?;
                 }
-                _ if is_chain && at > 0 || is_chain && targets.len() > 1 => {
+                _ if at > 0 || is_chain && targets.len() > 1 => {
                     return Err(parser.unexpected("one assignment at a time"));
                 }
                 _ => self.assigned(targets, &right)?,
