@@ -9,6 +9,7 @@
 #![warn(missing_docs)]
 
 mod cases;
+mod elsewhere;
 mod expression;
 mod formulas;
 mod functions;
@@ -196,7 +197,13 @@ fn read(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedMod
         ForeignFormat::StrikeGoldd => scripts::read(&text, Dialect::Matlab, which, &budget),
         ForeignFormat::Formulas => formulas::read(&text, &roles, &budget),
     }
-    .map_err(located)?;
+    .map_err(|problem| match format {
+        // what is taken for formulas, or for SBML, because it looks like nothing else
+        ForeignFormat::Formulas | ForeignFormat::Sbml if question.format.is_none() => {
+            located(elsewhere::not_read(name, &text).unwrap_or(problem))
+        }
+        _ => located(problem),
+    })?;
     // the other readers look for it themselves
     if let Some(wanted) = which.filter(|wanted| *wanted != "1" && model.title.as_deref() != Some(wanted))
         && matches!(format, ForeignFormat::Sbml | ForeignFormat::Formulas)

@@ -182,6 +182,14 @@ fn scripts_of_matlab_are_read_for_what_they_mean() {
             &[("x1", -24.0)],
             &[2.0],
         ),
+        // a function of rates, as MATLAB's solvers take them
+        (
+            "a.m",
+            "function dx = rhs(t, x, p)\nk = p(1);\ndx = zeros(2, 1);\ndx(1) = -k*x(1)*t;\ndx(2) = k*x(1) - p(2)*x(2);\nend\n",
+            &[("x1", 2.0), ("x2", 5.0), ("p1", 3.0), ("p2", 7.0), ("t", 11.0)],
+            &[("x1", -66.0), ("x2", -29.0), ("t", 1.0)],
+            &[11.0],
+        ),
         // the first element of a number is that number
         (
             "a.m",

@@ -171,6 +171,14 @@ fn scripts() {
             (4, 1),
             "plain assignments",
         ),
+        ("a.m", "function dx = rhs(t, x)\nA = [1 2; 3 4];\ndx = A*x;\nend\n", "", (1, 1), ""),
+        (
+            "a.m",
+            "function dx = rhs(t, x)\ndx = [x(2); x(3)];\nend\n",
+            "x(3) is used, and there are 2 rates",
+            (1, 1),
+            "each state",
+        ),
         ("a.m", "syms x1 k t\nx = x1; p = k;\nf = -k*x1*sin(t); h = x1;\n", "'t' is time", (3, 15), "rate 1"),
         (
             "a.m",
@@ -230,4 +238,43 @@ fn questions() {
     assert!(ask("a.txt", "x' = -k*x", outputs).contains("'q' stands in no equation"));
     let inputs = ImportQuestion { known_inputs: vec!["u".to_owned()], ..ImportQuestion::default() };
     assert!(import("a.txt", "x' = -k*x + u(t)", &inputs).unwrap().text.contains("known u(t)"));
+}
+
+/// Files of formats that are not read are named, with the way to bring them here.
+#[test]
+fn other_formats() {
+    all_refused(&[
+        (
+            "a.mo",
+            "model decay\n Real x(start = 1);\nequation\n der(x) = -k*x;\nend decay;",
+            "this looks like Modelica",
+            (1, 1),
+            "x' = -k*x",
+        ),
+        ("a.ant", "J0: A -> B; k*A\nA = 10\nk = 0.1\n", "this looks like Antimony", (1, 1), "getSBMLString"),
+        (
+            "a.txt",
+            "model m\n J0: A -> B; k*A;\n A = 10; k = 0.1\nend\n",
+            "this looks like Antimony",
+            (1, 1),
+            "getSBMLString",
+        ),
+        (
+            "a.bngl",
+            "begin model\nbegin parameters\n k 1\nend parameters\nend model",
+            "this looks like BioNetGen",
+            (1, 1),
+            "writeSBML",
+        ),
+        (
+            "a.proof",
+            "system \"a\"\nstate x\ndrift f\n  x' = -x\noutput x\n",
+            "this looks like a proof file",
+            (1, 1),
+            "no import",
+        ),
+        ("a.cps", "<?xml version=\"1.0\"?><COPASI></COPASI>", "this looks like COPASI", (1, 1), "SBML"),
+        ("a.yaml", "problems:\n- sbml_files: [m.xml]\n", "this looks like YAML", (1, 1), "parameter_file"),
+        ("a.tex", "\\dot{x} = -k x", "this looks like LaTeX", (1, 1), "x' = -k*x"),
+    ]);
 }

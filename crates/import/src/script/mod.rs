@@ -1,6 +1,7 @@
 //! The text of Julia, Python, MATLAB and printed formulas, as far as models need it: tokens, syntax, and what expressions mean.
 //! Nothing is ever run: what is not an expression or an assignment is refused at its line.
 
+mod calls;
 mod elements;
 mod forms;
 mod meaning;
