@@ -171,7 +171,13 @@ fn scripts() {
             (4, 1),
             "plain assignments",
         ),
-        ("a.m", "function dx = rhs(t, x)\nA = [1 2; 3 4];\ndx = A*x;\nend\n", "'x' is used as a whole", (1, 1), "x(1)"),
+        (
+            "a.m",
+            "function dx = rhs(t, x)\nA = [1 2; 3 4];\ndx = A*x;\nend\n",
+            "'x' is used as a whole",
+            (1, 1),
+            "x(1)",
+        ),
         (
             "a.m",
             "function dx = rhs(t, x)\ndx = [x(2); x(3)];\nend\n",

@@ -7,7 +7,7 @@ use crate::functions::takes_one;
 use crate::model::{ForeignModel, ForeignOutput};
 use crate::script::{Syntax, SyntaxKind, Token, TokenKind};
 use palmistry_lang::{Code, Problem, nearest};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 impl Reading<'_> {
     pub(super) fn look_for_names(&mut self, words: &[Token]) {
@@ -63,11 +63,9 @@ impl Reading<'_> {
     pub(super) fn refuse_signals(&self, roles: &PrintedRoles) -> Result<(), Problem> {
         let lists =
             [&self.states, &self.parameters, &self.known, &self.inputs, &self.unknown_inputs, &roles.inputs];
-        let is_said = |name: &String| {
-            self.rated.contains(name)
-                || self.defined.contains(name)
-                || lists.iter().any(|list| list.contains(name))
-        };
+        let listed: BTreeSet<&String> = lists.into_iter().flatten().collect();
+        let is_said =
+            |name: &String| self.rated.contains(name) || self.defined.contains(name) || listed.contains(name);
         match self.signals.iter().filter(|(name, _)| !is_said(name)).min_by_key(|(_, span)| span.start) {
             Some((name, span)) => {
                 let message = format!("'{name}' is a function of time, and has no equation");
@@ -144,10 +142,14 @@ pub(super) fn look_at_others(
         .iter()
         .map(|constant| constant.name.clone())
         .collect();
+    let states: BTreeSet<&str> = model.states.iter().map(|state| state.name.as_str()).collect();
+    let small: BTreeMap<String, String> =
+        model.states.iter().map(|state| (state.name.to_lowercase(), state.name.clone())).collect();
+    let mut remarks = Vec::new();
     for name in &others {
         let state = FUNCTIONS_OF_STATES.iter().find_map(|function| {
             let rest = name.strip_prefix(function)?;
-            model.states.iter().find(|state| state.name == rest).map(|state| (*function, state.name.clone()))
+            states.get(rest).map(|state| (*function, (*state).to_owned()))
         });
         if let Some((function, state)) = state {
             let mut place = 0..0;
@@ -166,11 +168,11 @@ pub(super) fn look_at_others(
                 "write {function}({state}), or name it in a line such as 'parameters: {name}'"
             )));
         }
-        let small = name.to_lowercase();
-        if let Some(state) = model.states.iter().find(|state| state.name.to_lowercase() == small) {
-            model.remarks.push(format!("'{name}' is taken to be a parameter: the state is '{}'", state.name));
+        if let Some(state) = small.get(&name.to_lowercase()) {
+            remarks.push(format!("'{name}' is taken to be a parameter: the state is '{state}'"));
         }
     }
+    model.remarks.append(&mut remarks);
     if !are_unknown && !others.is_empty() {
         model.remarks.push(format!("known constants, not in the list of parameters: {}", others.join(", ")));
     }

@@ -1,7 +1,7 @@
 //! Names in the tables of a problem: each is something of the model, or of another table.
 
 use super::tables::{Row, Table};
-use super::{Reading, is_number};
+use super::{Observable, Reading, is_number};
 use crate::expression::{ForeignExpr, ForeignKind, ForeignOrder};
 use crate::model::ForeignConstant;
 use dashu::rational::RBig;
@@ -43,6 +43,8 @@ impl Reading<'_> {
                 });
             }
         }
+        let observables: BTreeMap<&str, &Observable> =
+            self.observables.iter().map(|(id, one)| (id.as_str(), one)).collect();
         let is_value =
             |value: &str| is_number(value) || parameters.contains(value) || entities.contains(value);
         let mut columns: BTreeSet<&str> = BTreeSet::new();
@@ -96,7 +98,7 @@ impl Reading<'_> {
             let table = Table::read(file, &["observableId"])?;
             for row in &table.rows {
                 let id = table.needed(row, "observableId")?;
-                let Some((_, one)) = self.observables.iter().find(|(own, _)| own == id) else { continue };
+                let Some(one) = observables.get(id) else { continue };
                 // of its own parameters measurements say what they are, see below
                 let is_own = |name: &str| {
                     let stem =
@@ -111,7 +113,7 @@ impl Reading<'_> {
                             || given.contains(name)
                             || columns.contains(name)
                             || is_own(name)
-                            || is_noise && self.observables.iter().any(|(own, _)| own == name);
+                            || is_noise && observables.contains_key(name);
                         if !known && bad.is_none() {
                             bad = Some(name.to_owned());
                         }
@@ -184,20 +186,26 @@ impl Reading<'_> {
             columns.extend(condition.iter().map(|(name, _)| name.as_str()));
         }
         set.extend(columns.iter().copied());
-        for (species, compartment, value) in by_size {
-            if !set.contains(compartment.as_str()) {
-                continue;
-            }
-            if let Some((_, start)) = self.starts.iter_mut().find(|(name, _)| *name == species) {
+        let mut values: BTreeMap<String, ForeignExpr> = by_size
+            .into_iter()
+            .filter(|(_, compartment, _)| set.contains(compartment.as_str()))
+            .map(|(species, _, value)| (species, value))
+            .collect();
+        for (name, start) in &mut self.starts {
+            if let Some(value) = values.remove(name) {
                 *start = value;
-            } else if !columns.contains(species.as_str())
-                && self.model.constants.iter().any(|constant| constant.name == species)
-            {
-                // a species that is held is an amount by the size, too
-                self.model.constants.retain(|constant| constant.name != species);
-                self.model.definitions.push((species, value));
             }
         }
+        // a species that is held is an amount by the size, too
+        values.retain(|species, _| !columns.contains(species.as_str()));
+        let definitions = &mut self.model.definitions;
+        self.model.constants.retain(|constant| match values.remove(&constant.name) {
+            Some(value) => {
+                definitions.push((constant.name.clone(), value));
+                false
+            }
+            None => true,
+        });
     }
 
     /// Moves the limits of cases off the values that experiments give to a constant: where both sides are equal, a case that is written by `sign` has

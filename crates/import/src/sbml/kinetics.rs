@@ -249,8 +249,7 @@ impl Reading<'_> {
 
     /// The size of a compartment at the start: a number, or its name where a formula says what it is.
     pub(super) fn size_at_start(&self, id: &str) -> Option<ForeignExpr> {
-        let assigned = self.rule(id).is_some_and(|rule| !rule.is_rate)
-            || self.initial_values.iter().any(|(own, _)| own == id);
+        let assigned = self.rule(id).is_some_and(|rule| !rule.is_rate) || self.index.begun.contains(id);
         match (assigned, self.compartment(id).and_then(|own| own.size.clone())) {
             (true, _) => Some(ForeignExpr::name(id, &(0..0))),
             (false, Some(size)) => Some(ForeignExpr::new(ForeignKind::Number(size), &(0..0))),
@@ -261,6 +260,7 @@ impl Reading<'_> {
     /// Rates and definitions of species that nothing changes, in compartments that change: their amounts are constant, and so their concentrations
     /// are not.
     pub(super) fn add_held_species(&self, model: &mut ForeignModel) -> Result<(), Problem> {
+        let mut changes: BTreeMap<&str, bool> = BTreeMap::new();
         for species in self.species.iter().filter(|one| one.is_held && self.rule(&one.id).is_none()) {
             let Some(rule) = self.rule(&species.compartment).filter(|_| self.is_concentration(species))
             else {
@@ -275,12 +275,15 @@ impl Reading<'_> {
                 ));
                 continue;
             }
-            let has_beginning = self.initial_values.iter().any(|(id, _)| *id == species.id);
+            let has_beginning = self.index.begun.contains(&species.id);
             if let Some(amount) = species.amount.as_ref().filter(|_| !has_beginning) {
                 let amount = ForeignExpr::new(ForeignKind::Number(amount.clone()), &species.span);
                 let size = ForeignExpr::name(&species.compartment, &species.span);
                 model.definitions.push((species.id.clone(), amount.over(size)));
-            } else if self.changes(&species.compartment) {
+            } else if *changes
+                .entry(&species.compartment)
+                .or_insert_with(|| self.changes(&species.compartment))
+            {
                 let message = format!(
                     "the amount of '{}' is held in a compartment whose size is assigned, and begins as a concentration",
                     species.id

@@ -168,6 +168,8 @@ struct Index {
     species: BTreeMap<String, usize>,
     parameters: BTreeSet<String>,
     rules: BTreeMap<String, usize>,
+    /// What has an initial assignment.
+    begun: BTreeSet<String>,
 }
 
 /// The first place of each id.
@@ -240,6 +242,7 @@ impl<'b> Reading<'b> {
             species: places(species.iter().map(|one| &one.id)),
             parameters: parameters.iter().map(|(id, _)| id.clone()).collect(),
             rules: BTreeMap::new(),
+            begun: BTreeSet::new(),
         };
         let mut reading = Reading {
             index,
@@ -290,10 +293,9 @@ impl<'b> Reading<'b> {
 
     /// The species whose initial value is an amount by the size of its compartment, or the other way about.
     fn by_size(&self) -> Vec<(String, String, ForeignExpr)> {
-        let assigned = |id: &String| self.initial_values.iter().any(|(own, _)| own == id);
         let of = |one: &Species| {
             let value = self.beginning(one, |size| Some(ForeignExpr::name(size, &(0..0))))?;
-            let needs_size = value.as_number().is_none() && !assigned(&one.id);
+            let needs_size = value.as_number().is_none() && !self.index.begun.contains(&one.id);
             needs_size.then(|| (one.id.clone(), one.compartment.clone(), value))
         };
         self.species.iter().filter_map(of).collect()
@@ -357,6 +359,7 @@ impl<'b> Reading<'b> {
                 .help("assignments to stoichiometries are not read; write the number into the reaction"));
             }
             let value = self.math(node)?;
+            self.index.begun.insert(symbol.clone());
             self.initial_values.push((symbol, value));
         }
         Ok(())
@@ -452,7 +455,7 @@ impl<'b> Reading<'b> {
         let mut states_begin = false;
         let mut moving = BTreeMap::new();
         let mut assigned = BTreeSet::new();
-        by_size.retain(|(id, _)| !self.initial_values.iter().any(|(own, _)| own == id));
+        by_size.retain(|(id, _)| !self.index.begun.contains(id));
         for (id, value) in self.initial_values.iter().chain(&by_size) {
             if moved.contains(id) {
                 states_begin = true;

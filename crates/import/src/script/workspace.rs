@@ -152,6 +152,11 @@ impl<'b> ScriptWorkspace<'b> {
         matches!(self.bound.get(name), Some(Ok(ScriptValue::Many { .. }) | Err(_)))
     }
 
+    /// Pays for what looks at many things.
+    pub fn pay(&self, steps: usize) -> Result<(), Problem> {
+        self.budget.steps(steps).map_err(|spent| super::super::too_much(&(0..0), spent))
+    }
+
     /// Two lists, one behind the other.
     pub fn chained(&self, left: ScriptValue, right: ScriptValue, span: &Span) -> Valued {
         forms::chained(left, right, span)

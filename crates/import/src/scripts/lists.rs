@@ -29,33 +29,33 @@ impl Script<'_> {
     }
 
     /// The other names of a list.
-    fn others(&self, name: &str) -> Vec<String> {
-        let Some(group) = self.aliases.get(name) else { return Vec::new() };
-        self.aliases
-            .iter()
-            .filter(|(other, own)| *own == group && *other != name)
-            .map(|(other, _)| other.clone())
-            .collect()
+    fn others(&self, name: &str) -> Result<Vec<String>, Problem> {
+        let Some(group) = self.aliases.get(name) else { return Ok(Vec::new()) };
+        self.workspace.pay(self.aliases.len())?;
+        let others = self.aliases.iter().filter(|(other, own)| *own == group && *other != name);
+        Ok(others.map(|(other, _)| other.clone()).collect())
     }
 
     /// What a name stands for now, the other names of its list do, too.
-    pub(super) fn share(&mut self, name: &str) {
-        for other in self.others(name) {
-            if let Some(Ok(value)) = self.workspace.get(name) {
-                self.workspace.bind(&other, value);
+    pub(super) fn share(&mut self, name: &str) -> Result<(), Problem> {
+        for other in self.others(name)? {
+            if let Some(value) = self.workspace.get(name) {
+                self.workspace.bind(&other, value?);
             }
         }
+        Ok(())
     }
 
     /// A list that could not be read, by all of its names.
-    pub(super) fn break_list(&mut self, name: &str, why: &Problem) {
-        for own in self.others(name).into_iter().chain([name.to_owned()]) {
+    pub(super) fn break_list(&mut self, name: &str, why: &Problem) -> Result<(), Problem> {
+        for own in self.others(name)?.into_iter().chain([name.to_owned()]) {
             let why = Problem {
                 help: why.help.clone(),
                 ..Problem::new(Code::Foreign, &why.span, why.message.clone(), "this")
             };
             self.workspace.break_name(&own, why);
         }
+        Ok(())
     }
 
     /// `h.append(x2)`, `h.extend([x2])`: whether a call is one that changes a list. What else changes one is not read.
@@ -88,12 +88,12 @@ impl Script<'_> {
             Some(more) => {
                 let value = self.workspace.chained(before, more, &call.span)?;
                 self.workspace.bind(&name, value);
-                self.share(&name);
+                self.share(&name)?;
             }
             None => {
                 let message = format!("'{name}' is changed by '{method}', which is not read");
                 let why = Problem::new(Code::Foreign, &call.span, message, "this");
-                self.break_list(&name, &why.help("assign the whole list at once"));
+                self.break_list(&name, &why.help("assign the whole list at once"))?;
             }
         }
         Ok(true)

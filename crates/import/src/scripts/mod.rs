@@ -369,14 +369,14 @@ impl Script<'_> {
                     for value in entries {
                         self.workspace.assign_element(&name, at, down, value)?;
                     }
-                    self.share(&name);
+                    self.share(&name)?;
                 }
                 Ok(_) => {
                     let why =
                         Problem::new(Code::Foreign, &right.span, "an element is one number", "this is none");
-                    self.break_list(&name, &why);
+                    self.break_list(&name, &why)?;
                 }
-                Err(why) => self.break_list(&name, &why),
+                Err(why) => self.break_list(&name, &why)?,
             }
             return Ok(());
         }
