@@ -2,7 +2,7 @@
 
 use super::keys::{Formula, JointScene};
 use super::rows::{MeasuredRow, MeasuredRows};
-use super::unused::refuse_unused;
+use super::unused::{refuse_unknown_errors, refuse_unused};
 use palmistry_fit::{EstimatedParameter, JointExperiment, JointMeasurement, JointProblem, Phase};
 use palmistry_lang::{Kind, ReadError, SymbolInfo, System, nearest};
 use palmistry_math::expression::{NodeId, Symbol};
@@ -20,8 +20,10 @@ impl JointScene {
     pub fn problem(&self, data: Option<&Path>) -> Result<JointProblem, ReadError> {
         let mut system = System::read(&self.model)?;
         let rows = MeasuredRows::read(data.unwrap_or(&self.measurements))?;
-        refuse_unused(self, &mut system, &rows, data.is_none())?;
-        Building::new(self, system)?.problem(rows)
+        refuse_unknown_errors(self, &mut system, &rows)?;
+        let unused = |rows: &MeasuredRows| refuse_unused(self, &system, rows, data.is_none());
+        // a mistake in a formula may leave a name in none
+        Building::new(self, system.clone())?.problem(rows, &unused)
     }
 }
 
@@ -240,7 +242,12 @@ impl<'s> Building<'s> {
         Ok(all)
     }
 
-    fn problem(mut self, rows: MeasuredRows) -> Result<JointProblem, ReadError> {
+    /// The problem; `unused` refuses what it does not need, once all else is right.
+    fn problem(
+        mut self,
+        rows: MeasuredRows,
+        unused: &dyn Fn(&MeasuredRows) -> Result<(), ReadError>,
+    ) -> Result<JointProblem, ReadError> {
         let scene = self.scene;
         let unknown_state = scene
             .initial
@@ -325,6 +332,7 @@ impl<'s> Building<'s> {
                 law: error.law(),
             });
         }
+        unused(&rows)?;
         let one = self.system.graph.integer(1);
         let clock = self.rates.iter().position(|rate| *rate == one);
         Ok(JointProblem {

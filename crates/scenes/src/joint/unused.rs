@@ -10,26 +10,39 @@ use std::collections::BTreeSet;
 /// How many names a help lists.
 const LISTED: usize = 20;
 
-/// Refuses parameters, known values and errors that name nothing of the model and stand in no formula; with `own_rows`, the scene's own
+/// Refuses errors of what is no formula of the model.
+///
+/// # Errors
+/// The first such name, at its place.
+pub(super) fn refuse_unknown_errors(
+    scene: &JointScene,
+    system: &mut System,
+    rows: &MeasuredRows,
+) -> Result<(), ReadError> {
+    let measured: BTreeSet<&str> = rows.rows.iter().map(|row| row.output.as_str()).collect();
+    for name in scene.errors.keys() {
+        if !measured.contains(name.as_str()) && system.evaluate_text(name).is_err() {
+            let outputs = system.outputs.iter().map(|(name, _)| name.as_str());
+            let all: BTreeSet<&str> = measured.iter().copied().chain(outputs).collect();
+            let all: Vec<&str> = all.into_iter().collect();
+            let message = format!("'{}' is no output of the model", shown(name));
+            return Err(scene.error_at_key(&["errors", name], message, one_of("there are", name, &all)));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses parameters and known values that name nothing of the model and stand in no formula; with `own_rows`, the scene's own
 /// measurements, also experiments of which nothing was measured.
 ///
 /// # Errors
 /// The first such name, at its place.
 pub(super) fn refuse_unused(
     scene: &JointScene,
-    system: &mut System,
+    system: &System,
     rows: &MeasuredRows,
     own_rows: bool,
 ) -> Result<(), ReadError> {
-    let measured: BTreeSet<&str> = rows.rows.iter().map(|row| row.output.as_str()).collect();
-    for name in scene.errors.keys() {
-        if !measured.contains(name.as_str()) && system.evaluate_text(name).is_err() {
-            let outputs = system.outputs.iter().map(|(name, _)| name.as_str());
-            let all: Vec<&str> = measured.iter().copied().chain(outputs).collect();
-            let message = format!("'{}' is no output of the model", shown(name));
-            return Err(scene.error_at_key(&["errors", name], message, one_of("there are", name, &all)));
-        }
-    }
     let written = names_in_formulas(scene, rows);
     let moves =
         |symbol| system.fields.iter().any(|field| field.components.iter().any(|(state, _)| *state == symbol));

@@ -218,6 +218,9 @@ pub(super) fn of_syntax(text: &str, span: &Range<usize>) -> Option<String> {
     of_value(key, value)
 }
 
+/// Where nothing better is known of a value.
+pub(super) const ANY_KIND: &str = "write a value of the kind that is expected";
+
 /// Signs that look like others, or like none.
 fn is_foreign(sign: char) -> bool {
     matches!(sign, '\u{feff}' | '\u{200b}'..='\u{200d}' | '\u{2060}' | '\u{2212}' | '\u{2013}' | '\u{201c}'..='\u{201f}' | '\u{2018}' | '\u{2019}')
@@ -317,8 +320,11 @@ pub(super) fn of_kind(path: &[&str], written: &str, expected: &str) -> String {
         "a list of length 2" if table == "parameters" => {
             format!("write {key} = {{ bounds = [1e-3, 1e3] }}")
         }
+        _ if expected.starts_with("a list of length") && is_list => {
+            format!("{key} is {expected}: write so many, with ',' between them")
+        }
         _ if expected.starts_with("a list of length") => {
-            format!("write a list of that many numbers, as in {key} = [0, inf]{unit}")
+            format!("write {expected}, as in {key} = [0, inf]{unit}")
         }
         "a number" | "a whole number that is not negative" => {
             let whole = if expected == "a number" { "a number" } else { "a whole number from 0 on" };
@@ -377,7 +383,7 @@ pub(super) fn of_kind(path: &[&str], written: &str, expected: &str) -> String {
             format!("a function stands in quotation marks, as in {key} = \"{text}\"")
         }
         "a text" => format!("a text stands in quotation marks, as in {key} = \"{text}\""),
-        _ => format!("write {expected}"),
+        _ => ANY_KIND.to_owned(),
     }
 }
 

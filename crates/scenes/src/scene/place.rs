@@ -164,9 +164,13 @@ impl<'a> Places<'a> {
                 let help = match message.rsplit_once("expected ") {
                     Some((_, expected)) if message.starts_with("invalid ") => {
                         let written = self.text.get(span.clone()).unwrap_or_default();
-                        hints::of_kind(&self.path_to(&span), written, expected)
+                        // of a value within a table only the place of the table may be known
+                        match written.starts_with('{') && !message.contains("a table,") {
+                            true => hints::ANY_KIND.to_owned(),
+                            false => hints::of_kind(&self.path_to(&span), written, expected),
+                        }
                     }
-                    _ => "write a value of the kind that is expected".to_owned(),
+                    _ => hints::ANY_KIND.to_owned(),
                 };
                 Problem::new(Code::SceneValue, &span, message, "this").help(help)
             }
