@@ -187,7 +187,8 @@ fn the_command_tells_each_unknown() {
     // with every other question: its answer, and these numbers beside it
     let both = json(&palmistry(&["rank", file, "--global", "--at", "x=1", "--samples", "5", "--json"]));
     assert_eq!((&both["samples"], &both["global"]["unknowns"]), (&5.into(), &found["unknowns"]));
-    for others in [&["--accessible", "--samples", "5"] as &[&str], &["--where-it-drops"], &["--digits", "5"]] {
+    for others in [&["--accessible", "--samples", "5"] as &[&str], &["--where-it-drops"], &["--digits", "5"]]
+    {
         let alone = json(&palmistry(&[&["rank", file, "--json", "--no-times"], others].concat()));
         let both = palmistry(&[&["rank", file, "--json", "--no-times", "--functions"], others].concat());
         assert_eq!(both.status.code(), Some(0), "{others:?}");
@@ -199,7 +200,10 @@ fn the_command_tells_each_unknown() {
     let text = palmistry(&["rank", file, "--global", "--at", "x=1", "--samples", "5"]);
     let text = String::from_utf8(text.stdout).unwrap();
     assert!(text.contains("globally observable") && text.contains("sampled states"), "{text}");
-    assert_eq!(palmistry(&["rank", file, "--global", "--shard", "1/2", "--part", "p"]).status.code(), Some(2));
+    assert_eq!(
+        palmistry(&["rank", file, "--global", "--shard", "1/2", "--part", "p"]).status.code(),
+        Some(2)
+    );
 }
 
 #[derive(serde::Deserialize)]

@@ -2,10 +2,13 @@
 
 use super::codes::Code;
 use super::error::Problem;
-use super::model::System;
+use super::model::{Assignment, System};
 use super::syntax::{ClaimBody, Statement};
 use super::written::in_one_line;
-use palmistry_math::expression::syntax::{Equation, ExprKind, Relation};
+use dashu::rational::RBig;
+use palmistry_math::expression::Symbol;
+use palmistry_math::expression::syntax::{Equation, Expr, ExprKind, Relation};
+use std::collections::BTreeMap;
 
 impl System {
     /// Takes inequalities down, once it is known that they can be read.
@@ -42,6 +45,48 @@ impl System {
         self.assumed = assumed;
     }
 
+    /// Assumptions that no values meet: those that constants have in this file, or any at all. Claims under them would be true of
+    /// nothing.
+    pub(super) fn assumptions_that_cannot_hold(&mut self) -> Vec<Problem> {
+        let defaults: Assignment = (self.symbols.iter())
+            .filter_map(|(symbol, info)| Some((*symbol, info.default.clone()?)))
+            .collect::<Vec<_>>()
+            .into_iter()
+            .map(|(symbol, value)| (symbol, self.graph.rational(value)))
+            .collect();
+        let (mut bounds, mut found) = (BTreeMap::<Symbol, Bounds>::new(), Vec::new());
+        for one in self.assumed.clone() {
+            let sides = [&one.left, &one.right].map(|side| self.apart(|system| system.scalar(side)));
+            let [Ok((left, _)), Ok((right, _))] = sides else { continue };
+            let values = self.graph.substitute(&[left, right], &defaults);
+            let difference = self.graph.sub(values[0], values[1]);
+            if self.graph.constant_value(difference).is_some_and(|value| !holds(one.relation, value)) {
+                let text = in_one_line(&self.source, &one.span);
+                let message = format!("the values that the file gives do not meet {text}");
+                let problem = Problem::new(Code::Assumption, &one.span, message, "not met");
+                found.push(problem.help("give the constants other values, or leave their values out"));
+                continue;
+            }
+            let [number, other_number] = [left, right].map(|side| self.graph.constant_value(side).cloned());
+            let [symbol, other_symbol] = [left, right].map(|side| self.graph.as_symbol(side));
+            let (symbol, relation, number) = match (symbol, other_number, number, other_symbol) {
+                (Some(symbol), Some(number), ..) => (symbol, one.relation, number),
+                (.., Some(number), Some(symbol)) => (symbol, one.relation.turned(), number),
+                _ => continue,
+            };
+            let known = bounds.entry(symbol).or_default();
+            let could_be = !known.is_empty();
+            known.add(relation, number);
+            if could_be && known.is_empty() {
+                let message =
+                    format!("no value of '{}' meets all that is assumed of it", self.symbol_name(symbol));
+                let problem = Problem::new(Code::Assumption, &one.span, message, "with what stands above");
+                found.push(problem.help("leave one of the assumptions out: what holds in one case alone stands behind 'where' in a claim"));
+            }
+        }
+        found
+    }
+
     /// The assumptions as they stand in the file: `m > 0`.
     pub fn assumptions(&self) -> Vec<String> {
         let mut texts: Vec<String> =
@@ -53,5 +98,48 @@ impl System {
 }
 
 fn counts_solutions(statement: &Statement) -> bool {
-    matches!(&statement.equation.left.kind, ExprKind::Call(name, _) if name == "solutions")
+    let counts = |side: &Expr| matches!(&side.kind, ExprKind::Call(name, _) if name == "solutions");
+    counts(&statement.equation.left) || counts(&statement.equation.right)
+}
+
+/// The ends of the values that a symbol may have, each with whether the end itself is left out.
+#[derive(Default)]
+struct Bounds {
+    low: Option<(RBig, bool)>,
+    high: Option<(RBig, bool)>,
+}
+
+impl Bounds {
+    /// Takes one more inequality down: the symbol lies above a number or below it.
+    fn add(&mut self, relation: Relation, number: RBig) {
+        let end = (number, matches!(relation, Relation::Less | Relation::Greater));
+        match relation {
+            Relation::Less | Relation::AtMost
+                if self.high.as_ref().is_none_or(|high| end.0 < high.0 || end.0 == high.0 && end.1) =>
+            {
+                self.high = Some(end);
+            }
+            Relation::Greater | Relation::AtLeast if self.low.as_ref().is_none_or(|low| end > *low) => {
+                self.low = Some(end);
+            }
+            _ => {}
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        let ends = self.low.as_ref().zip(self.high.as_ref());
+        ends.is_some_and(|(low, high)| low.0 > high.0 || low.0 == high.0 && (low.1 || high.1))
+    }
+}
+
+fn holds(relation: Relation, difference: &RBig) -> bool {
+    let sign = difference.cmp(&RBig::ZERO);
+    match relation {
+        Relation::Equal => sign.is_eq(),
+        Relation::NotEqual => sign.is_ne(),
+        Relation::Less => sign.is_lt(),
+        Relation::AtMost => sign.is_le(),
+        Relation::Greater => sign.is_gt(),
+        Relation::AtLeast => sign.is_ge(),
+    }
 }

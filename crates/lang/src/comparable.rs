@@ -5,6 +5,7 @@ use super::error::Problem;
 use super::model::{System, Value};
 use super::problems::Cause;
 use super::syntax::{ClaimSyntax, Statement};
+use dashu::rational::RBig;
 use palmistry_math::expression::NodeId;
 use palmistry_math::expression::syntax::Relation;
 
@@ -43,7 +44,7 @@ impl System {
         if !comparable {
             let message = format!("{} cannot equal {}", values.0.describe(), values.1.describe());
             let problem = Problem::new(Code::Value, &statement.span, message, "this claim");
-            return Err(problem.because(Cause::Shape));
+            return Err(problem.help(self.why_not_comparable(&values)).because(Cause::Shape));
         }
         let relation = statement.equation.relation;
         let of_numbers = values.0.as_number().is_some() && values.1.as_number().is_some();
@@ -54,7 +55,11 @@ impl System {
         if relation != Relation::Equal && !of_numbers && !of_solutions && !bounds_a_rank {
             let (left, right) = (values.0.describe(), values.1.describe());
             let message = format!("'{}' compares numbers, not {left} and {right}", relation.sign());
-            return Err(Problem::new(Code::Statement, &statement.equation.span, message, "this relation"));
+            let problem = Problem::new(Code::Statement, &statement.equation.span, message, "this relation");
+            return Err(match of_a_rank {
+                true => problem.help("a rank that is not 3 is smaller, rank < 3, or greater, rank > 3"),
+                false => problem.help("matrices are compared by '='; '!=' is said of one number"),
+            });
         }
         let mut further = Vec::new();
         for one in &statement.further {
@@ -72,6 +77,14 @@ impl System {
                     .help("the number itself, as in rank = 3, and no name"));
             }
         }
+        if of_a_rank || of_solutions {
+            self.refuse_negative(&values, statement)?;
+        }
+        if of_solutions && !statement.further.is_empty() {
+            let message = "a number of solutions is compared with one number";
+            return Err(Problem::new(Code::Statement, &statement.span, message, "this claim")
+                .help("as in solutions(a) = 1 or solutions(a) <= 2; a second bound is a claim of its own"));
+        }
         if bounds_a_rank && statement.further.iter().any(|further| !further.relation.is_ordering()) {
             let message = "a rank has bounds, as in 2 <= rank <= 3";
             return Err(Problem::new(Code::Statement, &statement.equation.span, message, "this relation"));
@@ -85,7 +98,9 @@ impl System {
         }
         if statement.on_sample && !of_numbers {
             let message = "'on sample' is said of numbers; a rank is the generic one";
-            return Err(Problem::new(Code::Statement, &statement.span, message, "this claim"));
+            return Err(Problem::new(Code::Statement, &statement.span, message, "this claim").help(
+                "leave 'on sample' out: it stands behind a comparison of numbers, as in x^2 >= 0 on sample",
+            ));
         }
         let first = if is_rank(&values.0) { relation } else { relation.turned() };
         let mut relations = std::iter::once(first).chain(statement.further.iter().map(|one| one.relation));
@@ -97,13 +112,15 @@ impl System {
         if statement.except.is_some() && !of_a_rank {
             let message =
                 "'everywhere' and 'except where' are said of a rank: all else is claimed wherever it exists";
-            return Err(Problem::new(Code::Statement, &statement.span, message, "this claim"));
+            return Err(Problem::new(Code::Statement, &statement.span, message, "this claim")
+                .help("leave it out: it stands behind a rank, as in rank = 3 everywhere"));
         }
         if let Some(unequal) =
             statement.except.iter().flatten().flatten().find(|e| e.relation != Relation::Equal)
         {
             let message = "what is left out is given by equations";
-            return Err(Problem::new(Code::Statement, &unequal.span, message, "no equation"));
+            return Err(Problem::new(Code::Statement, &unequal.span, message, "no equation")
+                .help("as in except where x = 0; what holds for some states alone stands behind 'where'"));
         }
         for condition in statement.conditions.iter().chain(statement.except.iter().flatten().flatten()) {
             self.scalar(&condition.left)?;
@@ -128,6 +145,45 @@ impl System {
             }
         }
         Ok(())
+    }
+
+    /// A rank, or a number of solutions, beside a number below zero.
+    fn refuse_negative(&self, values: &(Value, Value), statement: &Statement) -> Result<(), Problem> {
+        let is_negative = |value: &Value| {
+            let number = value.as_number().and_then(|number| self.graph.constant_value(number));
+            number.is_some_and(|number| *number < RBig::ZERO)
+        };
+        if !is_negative(&values.0) && !is_negative(&values.1) {
+            return Ok(());
+        }
+        let message = "a rank and a number of solutions are never negative";
+        Err(Problem::new(Code::Statement, &statement.equation.span, message, "this claim")
+            .help("as in rank = 3 or solutions(a) = 1"))
+    }
+
+    /// What to write for a claim whose sides cannot be equal.
+    fn why_not_comparable(&self, values: &(Value, Value)) -> String {
+        let is_count =
+            |value: &Value| matches!(value, Value::Rank(_) | Value::CodistributionRank | Value::Solutions(_));
+        match values {
+            (Value::Infinity, other) | (other, Value::Infinity) if is_count(other) => {
+                "a rank is a whole number, as in rank = 3; infinitely many are solutions(e) = infinity"
+                    .to_owned()
+            }
+            (left, right) if is_count(left) && is_count(right) => {
+                "a number stands on the other side, as in rank = 3: two of them are two claims".to_owned()
+            }
+            (Value::Matrix(m), _) | (_, Value::Matrix(m))
+                if m.columns == self.unknowns().len() && m.rows == 1 =>
+            {
+                self.columns_in_words()
+            }
+            (Value::Matrix(_), _) | (_, Value::Matrix(_)) => {
+                "both sides have as many rows and columns, as in [x; y] = [0; 0]".to_owned()
+            }
+            _ => "numbers are compared with numbers, a rank and a number of solutions with a whole number"
+                .to_owned(),
+        }
     }
 
     /// A claim that known constants or numbers are observable, identifiable or not, or how many values they have: it would be true or

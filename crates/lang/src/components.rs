@@ -5,6 +5,7 @@ use super::codes::Code;
 use super::error::{Problem, nearest};
 use super::model::System;
 use super::problems::Cause;
+use super::vocabulary::functions;
 use palmistry_math::expression::Symbol;
 use palmistry_math::expression::parse::names_of_range;
 use palmistry_math::expression::syntax::{Indexed, Name, Place, Span};
@@ -181,7 +182,16 @@ impl System {
                     None => format!("unknown index '{index}'"),
                 };
                 Problem::new(Code::Component, span, message, "nothing says what it runs through").help(
-                    format!("write 'for {index} in 1..3' at the end, or sum({index} in 1..3, ...) around it"),
+                    match indexed {
+                        Indexed::Component { vector, .. }
+                            if functions().any(|known| known == vector.to_lowercase()) =>
+                        {
+                            format!("a function has round brackets, as in {}({index})", vector.to_lowercase())
+                        }
+                        _ => format!(
+                            "write 'for {index} in 1..3' at the end, or sum({index} in 1..3, ...) around it"
+                        ),
+                    },
                 )
             }
         }

@@ -71,7 +71,9 @@ impl System {
     pub(super) fn enter_experiments(&mut self, count: &Expr, span: &Span) -> Result<(), Problem> {
         if whole(count, 1..=MOST_EXPERIMENTS).is_none() {
             let message = format!("the number of experiments is one from 1 to {MOST_EXPERIMENTS}");
-            return Err(Problem::new(Code::Initial, &count.span, message, "this is none"));
+            return Err(
+                Problem::new(Code::Initial, &count.span, message, "this is none").help("as in experiments 2")
+            );
         }
         if self.coordinates.experiments_said {
             let message = "the file says already how many experiments there are";
@@ -85,7 +87,12 @@ impl System {
     pub(super) fn declare_coordinate(&mut self, name: &Name, kind: UnknownKind) -> Result<Symbol, Problem> {
         if let Some(field) = self.fields.first() {
             let message = format!("the field '{}' above does not know of this state", field.name);
-            return Err(Problem::new(Code::TooLate, &name.span, message, "declare states before fields"));
+            let problem = Problem::new(Code::TooLate, &name.span, message, "declare states before fields");
+            let line = self.place(field.span.start).0;
+            return Err(problem.help(format!(
+                "declare it above the field '{}', in front of line {line}: move this line up",
+                field.name
+            )));
         }
         if self.states_are_final {
             let message =
@@ -188,7 +195,8 @@ impl System {
             Some(expr) => {
                 let Some(order) = whole(expr, 0..=HIGHEST_DERIVATIVE) else {
                     let message = format!("an order is a whole number from 0 to {HIGHEST_DERIVATIVE}");
-                    return Err(Problem::new(Code::Number, &expr.span, message, "this is none"));
+                    return Err(Problem::new(Code::Number, &expr.span, message, "this is none")
+                        .help("as in unknown w(t) order 2"));
                 };
                 if order < used {
                     let text = format!("{}{}", name.text, "'".repeat(used));
@@ -232,7 +240,7 @@ impl System {
         }
         if self.known.contains(&symbol) {
             let message = format!("it is said already that '{}' is known", name.text);
-            return Err(Problem::new(Code::Twice, &name.span, message, "said again"));
+            return Err(Problem::new(Code::Twice, &name.span, message, "said again").help("leave it out"));
         }
         if self.states_are_final {
             let message =

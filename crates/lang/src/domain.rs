@@ -3,9 +3,10 @@
 //! A definition's guards are its own and those of the definitions that it uses; they are put together only when somebody
 //! asks, so that a long chain of definitions costs no more than its length.
 
+use super::codes::Code;
 use super::error::Problem;
 use super::model::{Assignment, System, Value};
-use palmistry_math::expression::syntax::Expr;
+use palmistry_math::expression::syntax::{Expr, Span};
 use palmistry_math::expression::{Guard, Need, NodeId, Symbol, add_guard, substitute_guards};
 use std::collections::{BTreeSet, HashSet};
 
@@ -88,6 +89,23 @@ impl System {
     /// Where a definition of the file exists.
     pub fn definition_guards(&self, name: &str) -> Vec<Guard> {
         self.definition_domains.get(name).map(|domain| self.guards_of(domain)).unwrap_or_default()
+    }
+
+    /// Refuses a rate or an output that has no value in any state, as it divides by zero or takes the root of a negative number.
+    pub(super) fn refuse_without_value(&self, guards: &[Guard], span: &Span) -> Result<(), Problem> {
+        let Some(unmet) = guards.iter().find(|guard| guard.constant(&self.graph) == Some(false)) else {
+            return Ok(());
+        };
+        let number = self.graph.text(unmet.node);
+        let why = match unmet.need {
+            Need::NotZero => "it divides by zero".to_owned(),
+            Need::Positive => format!("it takes the logarithm of {number}"),
+            Need::NotNegative => format!("it takes the root of {number}"),
+            Need::WithinOne | Need::InsideOne => format!("it takes the inverse sine or cosine of {number}"),
+        };
+        let message = format!("this has a value in no state: {why}");
+        Err(Problem::new(Code::Value, span, message, "this")
+            .help("write what it is to be: all numbers are real and finite"))
     }
 
     /// Guards with symbols replaced.

@@ -2,8 +2,9 @@
 
 use super::codes::Code;
 use super::error::{Problem, nearest};
+use super::foreign::call_of;
 use super::matrices::transpose;
-use super::model::{Assignment, Kind, Matrix, System, Value};
+use super::model::{Assignment, Kind, Matrix, Role, System, Value};
 use super::problems::Cause;
 use dashu::rational::RBig;
 use palmistry_math::expression::syntax::{Expr, ExprKind, Name, Span};
@@ -12,22 +13,6 @@ use palmistry_math::number::Function;
 
 /// A graph with more nodes than this is no longer something a person wrote down.
 pub(super) const LARGEST_GRAPH: usize = 4_000_000;
-
-/// What other languages call functions of this one.
-const OTHER_NAMES: [(&str, &str); 12] = [
-    ("ln", "log"),
-    ("arcsin", "asin"),
-    ("arccos", "acos"),
-    ("arctan", "atan"),
-    ("arctan2", "atan2"),
-    ("sgn", "sign"),
-    ("signum", "sign"),
-    ("fabs", "abs"),
-    ("tg", "tan"),
-    ("ctg", "cot"),
-    ("cotan", "cot"),
-    ("cosec", "csc"),
-];
 
 /// The functions of the language beside [`Function::ALL`].
 pub(super) const OTHER_FUNCTIONS: [&str; 22] = [
@@ -102,7 +87,16 @@ impl System {
                 total.ok_or_else(|| Problem::new(Code::Syntax, &expr.span, "an empty product", "here"))
             }
             ExprKind::Power(base, exponent) => {
-                let value = self.scalar(base)?;
+                let value = match self.elaborate(base)? {
+                    Value::Matrix(_) => {
+                        let message = "a matrix has no powers";
+                        let problem = Problem::new(Code::Value, &expr.span, message, "this power");
+                        return Err(problem.help(
+                            "an inverse is written inverse(M), a product M*M, a transpose transpose(M)",
+                        ));
+                    }
+                    _ => self.scalar(base)?,
+                };
                 if *exponent < 0 {
                     self.need(value, Need::NotZero);
                 }
@@ -144,7 +138,14 @@ impl System {
         let value = self.elaborate(expr)?;
         value.as_number().ok_or_else(|| {
             let message = format!("expected a number, found {}", value.describe());
-            Problem::new(Code::Value, &expr.span, message, "this")
+            let problem = Problem::new(Code::Value, &expr.span, message, "this");
+            match value {
+                Value::Matrix(_) => problem.help(
+                    "numbers stand in lists, as in output x, y, or with a name of their own; a range is an entry, as in sample k in [1, 2]",
+                ),
+                Value::Infinity => problem.help("there is no infinite number: a bound on one side is x >= 0"),
+                _ => problem.help("it stands alone on one side of a claim"),
+            }
         })
     }
 
@@ -218,16 +219,6 @@ impl System {
 
     /// The error for a name that nobody has declared as what it should be.
     pub(crate) fn unknown(&self, name: &str, span: &Span, wanted: Wanted) -> Problem {
-        let symbols =
-            self.symbols.iter().filter(|(_, info)| wanted != Wanted::State || info.kind == Kind::State);
-        let symbols = symbols.map(|(symbol, _)| self.symbol_name(*symbol));
-        let definitions = self.definitions.keys().map(String::as_str).chain(["pi", "rank", "infinity"]);
-        let fields = self.fields.iter().chain(&self.imported_fields).map(|f| f.name.as_str());
-        let near = match wanted {
-            Wanted::Field => nearest(name, fields),
-            Wanted::State | Wanted::Symbol => nearest(name, symbols),
-            Wanted::Name => nearest(name, symbols.chain(definitions)),
-        };
         let what = match wanted {
             Wanted::Field => "field",
             Wanted::State => "state",
@@ -237,75 +228,68 @@ impl System {
         if let Some(problem) = self.unknown_component(name, span) {
             return problem;
         }
-        let problem = if self.find_symbol(name).is_some() || self.definitions.contains_key(name) {
-            Problem::new(
-                Code::OtherKind,
-                span,
-                format!("'{name}' is no {what}"),
-                "declared above as something else",
-            )
-        } else {
-            Problem::new(Code::UnknownName, span, format!("unknown {what} '{name}'"), "not declared above")
-                .because(Cause::Unknown(name.to_owned()))
-        };
-        match (self.habit(name, wanted), near) {
-            (Some(help), _) => problem.help(help),
-            (None, Some(near)) => problem.help(format!("perhaps you meant '{near}'")),
-            (None, None) if wanted == Wanted::Name => problem
-                .help(format!("declare it: 'state {name}', 'param {name}', 'let {name} = ...', or 'known {name}(t)' for a signal")),
-            (None, None) => problem,
-        }
-    }
-
-    /// A function of other languages, and how it is written here.
-    fn function_of_others(&self, name: &str, arguments: &[Expr]) -> Option<String> {
-        let known = |wanted: &str| super::vocabulary::functions().find(|function| *function == wanted);
-        if let Some(own) = name.rsplit_once('.').and_then(|(_, own)| known(own)) {
-            return Some(format!("it is called '{own}' alone"));
-        }
-        if let Some(own) = known(&name.to_lowercase()).filter(|own| *own != name) {
-            return Some(format!("it is written in small letters, '{own}'"));
-        }
-        if let [Expr { kind: ExprKind::Name(time), .. }] = arguments
-            && time == "t"
-            && self.find_symbol("t").is_none()
-        {
-            return Some(format!(
-                "a signal is declared, 'known {name}(t)' or 'unknown {name}(t)', and written {name} where it is used"
-            ));
-        }
-        match name {
-            "pow" | "power" => Some("a power is written with '^', as in x^2".to_owned()),
-            "sqr" | "square" => Some("a square is written x^2, a root sqrt(x)".to_owned()),
-            "heaviside" | "step" | "piecewise" | "ifelse" | "where" | "iif" => Some(
-                "there is no 'if': write max(a, b), min(a, b), abs(a) or sign(a), or a claim for each case with 'where'".to_owned(),
-            ),
-            _ => None,
-        }
-    }
-
-    /// What a name means in other languages, and how that is written here.
-    fn habit(&self, name: &str, wanted: Wanted) -> Option<String> {
-        let is_function = super::vocabulary::functions().any(|function| function == name);
-        let primes = name.trim_end_matches('\'');
-        match (name, wanted) {
-            ("e", Wanted::Name) => Some("Euler's number to a power is written exp(x)".to_owned()),
-            ("i" | "j", Wanted::Name) => Some(format!(
-                "'{name}' has no value: numbers are real, and an index has its range behind 'for'"
-            )),
-            ("inf" | "Inf" | "oo", Wanted::Name) => Some("it is called 'infinity'".to_owned()),
-            ("t" | "time", Wanted::Name) => Some(
-                "time has no name: what depends on it is a signal, known u(t), or a state with the rate 1"
-                    .to_owned(),
-            ),
-            ("full", Wanted::Name) => Some("full rank is the number of unknowns, as in rank = 3".to_owned()),
-            (_, Wanted::Name) if is_function => {
-                Some(format!("a function has its argument in brackets at once, as in {name}(x)^2"))
+        let is_value = self.find_symbol(name).is_some() || self.definitions.contains_key(name);
+        let is_field = self.field(name).is_some();
+        let problem = match is_value || is_field {
+            true => {
+                let message = match is_value {
+                    true => format!("'{name}' is no {what}"),
+                    false => format!("'{name}' is a field"),
+                };
+                Problem::new(Code::OtherKind, span, message, "declared above as something else")
             }
-            (_, Wanted::State) if primes != name => Some(format!(
-                "a second derivative needs a state of its own, as in {primes}' = v and v' = ..."
-            )),
-            _ => None,
+            false => {
+                let message = format!("unknown {what} '{name}'");
+                Problem::new(Code::UnknownName, span, message, "not declared above")
+                    .because(Cause::Unknown(name.to_owned()))
+            }
+        };
+        let help = match (is_value, is_field, wanted) {
+            (true, _, Wanted::State) => {
+                "a constant has neither a rate nor an initial condition, but a value, as in param k = 1"
+                    .to_owned()
+            }
+            (true, _, Wanted::Field) => "the field stands first, as in L(f, x)".to_owned(),
+            (_, true, Wanted::Name) if self.field(name).is_some_and(|field| field.role == Role::Input) => {
+                format!(
+                    "a field stands first in L({name}, x) and bracket({name}, g); a signal that drives the system is declared instead, as in known u(t)"
+                )
+            }
+            (_, true, _) => {
+                format!(
+                    "a field stands first in L({name}, x) and bracket({name}, g); its component of x is L({name}, x)"
+                )
+            }
+            _ => self.habit(name, wanted).unwrap_or_else(|| self.nearest_or_declared(name, wanted)),
+        };
+        problem.help(help)
+    }
+
+    /// The nearest name that is known, or how one is declared.
+    fn nearest_or_declared(&self, name: &str, wanted: Wanted) -> String {
+        let symbols =
+            self.symbols.iter().filter(|(_, info)| wanted != Wanted::State || info.kind == Kind::State);
+        let symbols = symbols.map(|(symbol, _)| self.symbol_name(*symbol));
+        let definitions = self.definitions.keys().map(String::as_str).chain(["pi", "rank", "infinity"]);
+        let fields: Vec<&str> =
+            self.fields.iter().chain(&self.imported_fields).map(|field| field.name.as_str()).collect();
+        let near = match wanted {
+            Wanted::Field => nearest(name, fields.iter().copied()),
+            Wanted::State => nearest(name, symbols.chain(["others"])),
+            Wanted::Symbol => nearest(name, symbols),
+            Wanted::Name => nearest(name, symbols.chain(definitions)),
+        };
+        match (near, wanted) {
+            (Some(near), _) => format!("perhaps you meant '{near}'"),
+            (None, Wanted::Field) if fields.is_empty() => {
+                "a field is declared above, as in drift f, and a rate for each state below it".to_owned()
+            }
+            (None, Wanted::Field) => format!("the fields above are: {}", fields.join(", ")),
+            (None, Wanted::State) => format!("declare it above: state {name}"),
+            (None, Wanted::Symbol) => format!("declare it above: 'state {name}' or 'param {name}'"),
+            (None, Wanted::Name) => format!(
+                "declare it: 'state {name}', 'param {name}', 'let {name} = ...', or 'known {name}(t)' for a signal"
+            ),
         }
     }
 
@@ -318,7 +302,8 @@ impl System {
                     span,
                     format!("'{name}' takes one argument"),
                     format!("{} here", arguments.len()),
-                )),
+                )
+                .help(call_of(name))),
             }
         };
         if let Some(function) = Function::ALL.into_iter().find(|f| f.name() == name) {
@@ -354,10 +339,11 @@ impl System {
                     other => {
                         let message = format!("'{name}' takes a matrix, not {}", other.describe());
                         Err(Problem::new(Code::Arguments, &argument.span, message, "this")
-                            .help("write [row; row; ...]"))
+                            .help(call_of(name)))
                     }
                 },
-                _ => Err(Problem::new(Code::Arguments, span, format!("'{name}' takes one matrix"), "here")),
+                _ => Err(Problem::new(Code::Arguments, span, format!("'{name}' takes one matrix"), "here")
+                    .help(call_of(name))),
             },
             "transpose" | "inverse" => match arguments {
                 [argument] => match self.elaborate(argument)? {
@@ -365,10 +351,12 @@ impl System {
                     Value::Matrix(matrix) => self.inverse(&matrix, &argument.span),
                     other => {
                         let message = format!("'{name}' takes a matrix, not {}", other.describe());
-                        Err(Problem::new(Code::Arguments, &argument.span, message, "this"))
+                        Err(Problem::new(Code::Arguments, &argument.span, message, "this")
+                            .help(call_of(name)))
                     }
                 },
-                _ => Err(Problem::new(Code::Arguments, span, format!("'{name}' takes one matrix"), "here")),
+                _ => Err(Problem::new(Code::Arguments, span, format!("'{name}' takes one matrix"), "here")
+                    .help(call_of(name))),
             },
             "dot" | "cross" => match arguments {
                 [a, b] => match (self.elaborate(a)?, self.elaborate(b)?) {
@@ -380,7 +368,8 @@ impl System {
                             .help("as in [x; y; z]"))
                     }
                 },
-                _ => Err(Problem::new(Code::Arguments, span, format!("'{name}' takes two vectors"), "here")),
+                _ => Err(Problem::new(Code::Arguments, span, format!("'{name}' takes two vectors"), "here")
+                    .help(call_of(name))),
             },
             "solutions" => match arguments {
                 [expression] => Ok(Value::Solutions(self.scalar(expression)?)),
@@ -389,7 +378,8 @@ impl System {
                     span,
                     "'solutions' takes one unknown, or one expression",
                     "here",
-                )),
+                )
+                .help(call_of(name))),
             },
             "pole" => match arguments {
                 [expression, factor] => {
@@ -402,7 +392,8 @@ impl System {
                     span,
                     "'pole' takes an expression and what vanishes at the pole",
                     "here",
-                )),
+                )
+                .help(call_of(name))),
             },
             _ => {
                 if let Some(word) = super::visible::VISIBLE.into_iter().find(|(word, ..)| *word == name) {
@@ -411,22 +402,9 @@ impl System {
                 if let Some(found) = self.composed(name, arguments, span) {
                     return found;
                 }
-                let known = super::vocabulary::functions();
-                let problem =
-                    Problem::new(Code::UnknownName, span, format!("unknown function '{name}'"), "here");
-                let other = OTHER_NAMES.into_iter().find(|(other, _)| *other == name);
-                let is_value = self.find_symbol(name).is_some() || self.definitions.contains_key(name);
-                if let Some(help) = self.function_of_others(name, arguments) {
-                    return Err(problem.help(help));
-                }
-                Err(match (other, nearest(name, known)) {
-                    (Some((_, own)), _) => problem.help(format!("it is called '{own}'")),
-                    (None, _) if is_value => problem.help(format!(
-                        "'{name}' is no function: a product is written with '*', as in {name}*(...)"
-                    )),
-                    (None, Some(near)) => problem.help(format!("perhaps you meant '{near}'")),
-                    (None, None) => problem.help("a product is written with '*'"),
-                })
+                let message = format!("unknown function '{name}'");
+                let problem = Problem::new(Code::UnknownName, span, message, "here");
+                Err(problem.help(self.advice_for_function(name, arguments)))
             }
         }
     }

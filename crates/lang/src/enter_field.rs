@@ -111,11 +111,14 @@ impl System {
             self.refuse_rate(role, symbol, &state.span)?;
             if !moved.insert(symbol) {
                 let message = format!("'{}' is given twice in the field '{}'", state.text, name.text);
-                return Err(Problem::new(Code::Twice, &state.span, message, "the second time"));
+                return Err(Problem::new(Code::Twice, &state.span, message, "the second time")
+                    .help("leave one of the two out"));
             }
             let (rate, domain) = self.apart(|system| system.scalar(expr))?;
+            let needed = self.guards_of(&domain);
+            self.refuse_without_value(&needed, &expr.span)?;
             rates.push((symbol, rate));
-            guards.push(self.guards_of(&domain));
+            guards.push(needed);
         }
         Ok((rates, guards))
     }

@@ -161,7 +161,8 @@ pub fn nearest<'a>(wanted: &str, known: impl IntoIterator<Item = &'a str>) -> Op
         .map(|name| (strsim::damerau_levenshtein(wanted, name), name))
         // of a short name nothing else may be left
         .filter(|(distance, _)| {
-            *distance <= 1 + wanted.chars().count() / 3 && *distance < wanted.chars().count()
+            let length = wanted.chars().count();
+            *distance <= (length / 3).max(1) && *distance < length
         })
         .min()
         .map(|(_, name)| name)

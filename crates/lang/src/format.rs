@@ -1,4 +1,4 @@
-//! The normal form of a proof file: blanks at the initial_values and ends of lines, columns of `=` and `in`, empty lines. Nothing
+//! The normal form of a proof file: blanks at the beginnings and ends of lines, columns of `=` and `in`, empty lines. Nothing
 //! else is touched: every sign, every comment and every text in quotation marks stays as it is, byte for byte.
 
 use super::codes::Code;

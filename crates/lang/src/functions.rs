@@ -2,6 +2,7 @@
 
 use super::codes::Code;
 use super::error::Problem;
+use super::foreign::call_of;
 use super::model::{System, Value};
 use dashu::rational::RBig;
 use palmistry_math::expression::syntax::{Expr, Span};
@@ -32,7 +33,8 @@ impl System {
                 span,
                 message,
                 format!("{} here", arguments.len()),
-            )));
+            )
+            .help(call_of(name))));
         }
         Some(self.composed_of(name, arguments))
     }
@@ -93,7 +95,8 @@ impl System {
                 let count = i32::try_from(count.clone()).ok().filter(|n| n.abs() <= LARGEST_EXPONENT);
                 let Some(count) = count else {
                     let message = format!("an exponent of at most {LARGEST_EXPONENT} is expected");
-                    return Err(Problem::new(Code::Number, span, message, "here"));
+                    return Err(Problem::new(Code::Number, span, message, "here")
+                        .help("write exp(n*log(x)) for any other power of a positive number"));
                 };
                 let mut base = base;
                 if !whole {

@@ -1,10 +1,11 @@
 //! The grammar of a proof file, without the meaning of its names. `book/src/language.md` documents it; it is a public interface.
 
+use super::advice::advised;
 use super::dimension::{annotation, declared};
-use super::entry_words::{ENTRY, advised, is_an_entry, no_entry};
+use super::entry_words::{ENTRY, is_an_entry, no_entry, of_a_line};
 use super::model::Role;
-use super::problems::{Damage, indentation, is_first_in_line, next_entry, open_quotation};
-use super::signals::entry;
+use super::problems::{Damage, indentation, is_first_in_line, missing_before, next_entry, open_quotation};
+use super::signals::{entry, is_word_of_a_constant};
 use super::standing::{Basis, basis, fault};
 use super::syntax::{ClaimBody, ClaimSyntax, Expectation, Item, OutputSyntax, Statement};
 use super::views::{begins, view};
@@ -12,8 +13,8 @@ use super::visible::visible;
 use palmistry_io::foreign::shown;
 use palmistry_math::expression::Expected;
 use palmistry_math::expression::parse::{
-    Depth, Read, Text, blank, conditions, equations, keyword, loops, moved, name, range, read_all, repeat,
-    sign, stop, sum, target, written_out,
+    Depth, Read, Text, blank, conditions, equations, keyword, list, loops, moved, name, range, read_all,
+    repeat, sign, stop, sum, target, written_out,
 };
 use palmistry_math::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
 use std::collections::HashSet;
@@ -37,9 +38,8 @@ fn names(input: &mut Text<'_>) -> Read<Vec<Name>> {
         let target = target(input)?;
         repeat(input, &[], |indices| target.names(indices))
     };
-    let list: Vec<Vec<Name>> =
-        cut_err(separated(1.., one, sign(","))).context("a list of names").parse_next(input)?;
-    Ok(list.concat())
+    let found: Vec<Vec<Name>> = cut_err(list("a name", one)).context("a list of names").parse_next(input)?;
+    Ok(found.concat())
 }
 
 /// Expressions between commas, each perhaps for several values of an index.
@@ -49,8 +49,8 @@ fn expressions(input: &mut Text<'_>) -> Read<Vec<Expr>> {
         let loops = loops(input)?;
         repeat(input, &loops, |indices| Ok(written_out(indices.bind(&expr)?)))
     };
-    let list: Vec<Vec<Expr>> = separated(1.., one, sign(",")).parse_next(input)?;
-    Ok(list.concat())
+    let found: Vec<Vec<Expr>> = list("an expression", one).parse_next(input)?;
+    Ok(found.concat())
 }
 
 fn system(input: &mut Text<'_>) -> Read<Item> {
@@ -86,8 +86,8 @@ fn seen(input: &mut Text<'_>, before: impl Fn(&mut Text<'_>) -> Read<()>) -> Rea
             Ok(entries.into_iter().map(one).collect())
         })
     };
-    let list: Vec<Vec<_>> = cut_err(separated(1.., one, sign(","))).parse_next(input)?;
-    Ok(list.concat())
+    let found: Vec<Vec<_>> = cut_err(list("an output", one)).parse_next(input)?;
+    Ok(found.concat())
 }
 
 fn outputs(input: &mut Text<'_>) -> Read<Item> {
@@ -263,8 +263,7 @@ pub(super) fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
         Some(_) => {
             cut_err(keyword("where")).context("'where', as in 'except where x = 0'").parse_next(input)?;
             let one = |input: &mut Text<'_>| -> Read<Vec<Equation>> {
-                let found: Vec<Vec<Equation>> =
-                    cut_err(separated(1.., equations, sign(","))).parse_next(input)?;
+                let found: Vec<Vec<Equation>> = cut_err(list("an equation", equations)).parse_next(input)?;
                 Ok(found.into_iter().flatten().collect())
             };
             let sets: Vec<Vec<Equation>> = cut_err(separated(1.., one, keyword("or"))).parse_next(input)?;
@@ -293,11 +292,10 @@ fn claim(input: &mut Text<'_>) -> Read<Item> {
         keyword("refuted").value(Expectation::Refuted),
         keyword("undecided").value(Expectation::Undecided),
     ));
-    let at = input.current_token_start();
     let expected = match opt(preceded(keyword("expect"), opt(verdict))).parse_next(input)? {
         None => Expectation::Proved,
         Some(Some(verdict)) => verdict,
-        Some(None) => return stop(at + "expect ".len(), "'proved', 'refuted' or 'undecided'", None),
+        Some(None) => return stop(input.current_token_start(), "'proved', 'refuted' or 'undecided'", None),
     };
     if basis != Basis::Derived && expected != Expectation::Proved {
         return stop(given, "either what the claim rests on or a verdict other than 'proved'", None);
@@ -355,9 +353,9 @@ fn looks(input: &mut Text<'_>) -> Read<Item> {
         let text = quoted(input)?;
         Ok((name, text, begin..input.current_token_start()))
     };
-    let list = cut_err(separated(1.., one, sign(",")))
+    let looks = cut_err(list("a name and how it looks", one))
         .context("a name and how it looks, as in latex Fyf \"F_{yf}\"");
-    list.map(Item::Looks).parse_next(input)
+    looks.map(Item::Looks).parse_next(input)
 }
 
 fn item(input: &mut Text<'_>) -> Read<Vec<Item>> {
@@ -426,19 +424,28 @@ pub(super) fn parse_entries(text: &str, most: usize) -> Entries {
         let mut before = (input.checkpoint(), input.current_token_start());
         while !input.input.as_ref().is_empty() {
             let (start, begin) = (input.checkpoint(), input.current_token_start());
-            let expected = match item.parse_next(input) {
+            let behind = !items.is_empty() && !is_first_in_line(text, begin);
+            let found = match behind && is_word_of_a_constant(input) {
+                true => winnow::combinator::fail.parse_next(input),
+                false => item.parse_next(input),
+            };
+            let mut entry = begin;
+            let mut expected = match found {
                 Ok(found) => {
                     spans.extend(found.iter().map(|_| begin..input.current_token_start()));
                     items.extend(found);
                     before = (start, begin);
                     continue;
                 }
-                Err(ErrMode::Cut(error)) => error,
-                Err(_) => no_entry(text, input, !items.is_empty()),
+                Err(ErrMode::Cut(error)) => Expected { at: missing_before(text, begin, error.at), ..error },
+                Err(_) => {
+                    entry = if behind { before.1 } else { begin };
+                    no_entry(text, input, !items.is_empty())
+                }
             };
+            expected = advised(of_a_line(expected, text), text, entry);
             let after = |begin: usize| next_entry(text, begin, indentation(text, begin));
             // what stands behind an entry in its line belongs to it
-            let behind = !items.is_empty() && !is_first_in_line(text, begin);
             let swallowed =
                 if behind { open_quotation(&text[before.1..after(before.1).min(begin)]) } else { None };
             let (start, begin, damaged, expected) = match swallowed {
@@ -456,7 +463,7 @@ pub(super) fn parse_entries(text: &str, most: usize) -> Entries {
                 _ => (start, begin, if behind { before.1 } else { begin }, expected),
             };
             let end = if damage.len() + 1 >= most { text.len() } else { after(begin) };
-            damage.push(Damage { expected: advised(expected.hinted(text), text), left_out: damaged..end });
+            damage.push(Damage { expected, left_out: damaged..end });
             input.reset(&start);
             input.next_slice(end - begin);
         }

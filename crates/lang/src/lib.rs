@@ -8,6 +8,7 @@
 
 #![warn(missing_docs)]
 
+mod advice;
 mod as_written;
 mod assume;
 mod codes;
@@ -29,6 +30,7 @@ mod error;
 mod examine;
 mod excerpt;
 mod extent;
+mod foreign;
 mod format;
 mod functions;
 mod given;

@@ -15,7 +15,11 @@ impl System {
     pub fn determinant(&mut self, matrix: &Matrix, span: &Span) -> Result<Value, Problem> {
         if matrix.rows != matrix.columns {
             let message = format!("the determinant of a matrix of {} by {}", matrix.rows, matrix.columns);
-            return Err(Problem::new(Code::Shape, span, message, "this is not square"));
+            let problem = Problem::new(Code::Shape, span, message, "this is not square");
+            return Err(match matrix.columns == self.unknowns().len() {
+                true => problem.help(self.columns_in_words()),
+                false => problem.help("a determinant has as many rows as columns, as in det([a, b; c, d])"),
+            });
         }
         if matrix.rows > LARGEST {
             let message = format!("a determinant of {} rows; at most {LARGEST} are expanded", matrix.rows);
@@ -114,7 +118,8 @@ impl System {
             let begin = row.first().map_or(span, |first| &first.span);
             if *width.get_or_insert(columns) != columns {
                 let message = format!("a row of {columns} entries below one of {}", width.unwrap_or(0));
-                return Err(Problem::new(Code::Shape, begin, message, "this row"));
+                return Err(Problem::new(Code::Shape, begin, message, "this row")
+                    .help("all rows have as many entries, as in [a, b; c, d]"));
             }
             for line in 0..blocks.first().map_or(0, |block| block.rows) {
                 for block in &blocks {
@@ -150,7 +155,8 @@ impl System {
             }
             other => {
                 let message = format!("{} cannot be calculated with", other.describe());
-                Err(Problem::new(Code::Value, span, message, "it stands alone on one side of '='"))
+                Err(Problem::new(Code::Value, span, message, "it stands alone on one side of '='")
+                    .help("as in rank = 3"))
             }
         }
     }
@@ -165,7 +171,7 @@ impl System {
             }
             (x, y) => {
                 let message = format!("{} and {} cannot be added", x.describe(), y.describe());
-                Err(Problem::new(Code::Shape, span, message, "this"))
+                Err(Problem::new(Code::Shape, span, message, "this").help(of_kinds(&x, &y)))
             }
         }
     }
@@ -216,9 +222,29 @@ impl System {
             (x, y, divides) => {
                 let verb = if divides { "divided" } else { "multiplied" };
                 let message = format!("{} cannot be {verb} by {}", x.describe(), y.describe());
-                Err(Problem::new(Code::Shape, span, message, "this"))
+                Err(Problem::new(Code::Shape, span, message, "this").help(of_kinds(&x, &y)))
             }
         }
+    }
+
+    /// By what the columns of a row of differentials are.
+    pub(super) fn columns_in_words(&self) -> String {
+        let names = self.column_names();
+        let first = names.first().map_or("x", |name| name);
+        format!(
+            "a row d(e) has an entry for each unknown: {}; d(e, {first}) is by these alone that are named",
+            names.join(", ")
+        )
+    }
+}
+
+/// Why two values do not go together in a calculation.
+fn of_kinds(x: &Value, y: &Value) -> &'static str {
+    match (x, y) {
+        (Value::Scalar(_) | Value::Matrix(_), Value::Scalar(_) | Value::Matrix(_)) => {
+            "matrices have fitting numbers of rows and columns, as in [a; b] + [c; d] or [a, b]*[c; d]; a product of two vectors is dot(v, w)"
+        }
+        _ => "it stands alone on one side of a claim, as in rank = 3",
     }
 }
 

@@ -141,6 +141,23 @@ pub(super) fn is_first_in_line(text: &str, at: usize) -> bool {
     line.trim_start().is_empty()
 }
 
+/// The place of something that is missing: where it was missed is the beginning of another entry, at the end of what stands before
+/// that.
+pub(super) fn missing_before(text: &str, begin: usize, at: usize) -> usize {
+    if at <= begin || !is_first_in_line(text, at) || first_entry_word(&text[at..]).is_none() {
+        return at;
+    }
+    let (mut end, mut comment, mut quoted) = (begin, false, false);
+    for (place, c) in text[begin..at].char_indices() {
+        quoted ^= c == '"' && !comment;
+        comment = (comment || c == '#' && !quoted) && !ends_a_line(c);
+        if !comment && !c.is_whitespace() && !ends_a_line(c) {
+            end = begin + place + c.len_utf8();
+        }
+    }
+    end
+}
+
 /// The place of the last quotation mark of an entry, if it closes nothing.
 pub(super) fn open_quotation(entry: &str) -> Option<usize> {
     let (mut open, mut comment) = (None, false);
@@ -154,7 +171,7 @@ pub(super) fn open_quotation(entry: &str) -> Option<usize> {
 }
 
 /// The word of the entry that a text begins with.
-fn first_entry_word(text: &str) -> Option<&'static str> {
+pub(super) fn first_entry_word(text: &str) -> Option<&'static str> {
     let word = words(text).next()?;
     let rest = text.trim_start().strip_prefix(word)?;
     let entry = ENTRIES.into_iter().find(|entry| *entry == word)?;
@@ -340,6 +357,10 @@ impl System {
                     }
                 }
                 self.unknown_names(last, found);
+            }
+            // fields stand first, which are looked for where the bracket is
+            ExprKind::Call(name, arguments) if name == "bracket" => {
+                arguments.iter().skip(2).for_each(|argument| self.unknown_names(argument, found));
             }
             ExprKind::Call(_, arguments) => {
                 arguments.iter().for_each(|argument| self.unknown_names(argument, found));

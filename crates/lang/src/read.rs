@@ -99,7 +99,10 @@ impl System {
                 && !ids.insert(claim.id.clone())
             {
                 let message = format!("there is a claim '{}' already", claim.id);
-                problems.add(Problem::new(Code::Twice, &claim.span, message, "the second one"))?;
+                problems.add(
+                    Problem::new(Code::Twice, &claim.span, message, "the second one")
+                        .help("each claim has its own number or name"),
+                )?;
             }
             let remnant = Remnant::of(item, problems);
             if let Err(problem) = self.enter(item, folder, reading, &derivatives) {
@@ -114,6 +117,9 @@ impl System {
             problems.add(problem)?;
         }
         for problem in self.looks_alike(&items) {
+            problems.add(problem)?;
+        }
+        for problem in self.assumptions_that_cannot_hold() {
             problems.add(problem)?;
         }
         self.claim_what_is_assumed();
@@ -250,6 +256,8 @@ impl System {
                     }
                     let (value, domain) = self.apart(|system| system.scalar(expr))?;
                     let guards = self.guards_of(&domain);
+                    self.refuse_without_value(&guards, &expr.span)?;
+                    self.refuse_what_measures_nothing(value, &expr.span)?;
                     let text = match (&expr.kind, is_repeated) {
                         (_, false) => in_one_line(&self.source, &expr.span),
                         (ExprKind::Name(name), true) => name.clone(),
@@ -292,6 +300,29 @@ impl System {
         Ok(())
     }
 
+    /// Refuses an output that is made of numbers and known constants alone: whatever the state is, it is the same.
+    fn refuse_what_measures_nothing(&self, value: NodeId, span: &Span) -> Result<(), Problem> {
+        let symbols = self.graph.symbols_of([value]);
+        let is_constant = |symbol: &Symbol| {
+            let kind = self.symbol_info(*symbol).map(|info| info.kind);
+            kind == Some(Kind::Parameter) && !self.states.contains(symbol)
+        };
+        if !symbols.iter().all(is_constant) {
+            return Ok(());
+        }
+        let message = "this output is the same in all states, and measures nothing";
+        let problem = Problem::new(Code::Value, span, message, "no state stands in it");
+        Err(match symbols.iter().next() {
+            Some(symbol) => {
+                let name = self.symbol_name(*symbol);
+                problem.help(format!("name a state, as in output x; a constant that is to be found is declared as 'param {name} unknown'"))
+            }
+            None => problem.help(
+                "name a state, as in output x; an equation that holds at all times is written output 0 = e",
+            ),
+        })
+    }
+
     /// Adds an output. What is seen twice is seen once: a second time it would count as a measurement of its own.
     fn see(&mut self, text: String, value: NodeId, guards: Vec<Guard>) {
         match self.outputs.iter().position(|(_, known)| *known == value) {
@@ -308,14 +339,14 @@ impl System {
         let taken = declared.is_some_and(|info| info.kind != Kind::Imported)
             || self.definitions.contains_key(&name.text)
             || ["pi", "rank", "others"].contains(&name.text.as_str());
-        if UNDECLARABLE.contains(&name.text.as_str()) {
+        if UNDECLARABLE.iter().chain(&TAKEN).any(|word| *word == name.text) {
             let message = format!("'{}' is a word of the language", name.text);
             let problem = Problem::new(Code::Name, &name.span, message, "choose another name");
             return Err(match name.text.as_str() {
                 word @ ("known" | "unknown") => problem.help(format!(
                     "without ',' before it, it says that the constant is {word}, as in param a {word}, b {word}"
                 )),
-                _ => problem,
+                word => problem.help(format!("choose another name, as in {word}_1")),
             });
         }
         if taken {
@@ -324,16 +355,20 @@ impl System {
                 &name.span,
                 format!("'{}' has a meaning already", name.text),
                 "declared again",
-            ));
+            )
+            .help("choose another name, or leave one of the two out"));
         }
         if name.text.contains('.') {
             let message = "a name with a dot belongs to an imported system";
-            return Err(Problem::new(Code::Name, &name.span, message, "choose one without"));
+            return Err(Problem::new(Code::Name, &name.span, message, "choose one without")
+                .help(format!("as in {}", name.text.replace('.', "_"))));
         }
         if name.text.contains(['\'', '@']) {
             let message =
                 "derivatives of signals, and what belongs to further experiments, come with what they are of";
-            return Err(Problem::new(Code::Name, &name.span, message, "choose a name without"));
+            let plain = name.text.split(['\'', '@']).next().unwrap_or_default();
+            return Err(Problem::new(Code::Name, &name.span, message, "choose a name without")
+                .help(format!("as in {plain}_1; a derivative of a state along the drift f is L(f, x)")));
         }
         self.refuse_mixed(name)
     }
@@ -365,12 +400,14 @@ impl System {
                     &span,
                     format!("the range of '{}' is empty", name.text),
                     "low above high",
-                ));
+                )
+                .help("the low end comes first, as in [0, 1]"));
             }
             // a range that came with an import may be replaced, one of this file not
             if !self.sampled.insert(symbol) {
                 let message = format!("'{}' has a range already", name.text);
-                return Err(Problem::new(Code::Twice, &name.span, message, "the second one"));
+                return Err(Problem::new(Code::Twice, &name.span, message, "the second one")
+                    .help("leave one of the two out"));
             }
             self.spread_range(symbol, &range);
             if let Some(info) = self.symbols.get_mut(&symbol) {
@@ -391,6 +428,10 @@ impl System {
         Ok(())
     }
 }
+
+/// Names that would be taken for statements.
+const TAKEN: [&str; 6] =
+    ["observable", "unobservable", "identifiable", "unidentifiable", "solutions", "codistribution"];
 
 /// What comes below a codistribution that does not know of it.
 fn late(what: &str, span: &Span) -> Problem {

@@ -7,10 +7,12 @@ use super::dimension::{DeclaredDimension, DeclaredTarget, annotation};
 use super::driven::Driven;
 use super::syntax::{Item, Statement};
 use super::views::View;
-use palmistry_math::expression::parse::{Read, Text, keyword, loops, name, repeat, sign, stop, sum, target};
+use palmistry_math::expression::parse::{
+    Read, Text, keyword, list, loops, name, repeat, sign, stop, sum, target,
+};
 use palmistry_math::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
 use std::collections::HashMap;
-use winnow::combinator::{alt, cut_err, opt, peek, preceded, separated};
+use winnow::combinator::{alt, cut_err, opt, peek, preceded};
 use winnow::prelude::*;
 use winnow::stream::Location;
 
@@ -46,6 +48,12 @@ pub(super) fn begins(input: &mut Text<'_>) -> bool {
     let initial = (keyword("initial"), target, alt((sign("="), sign(","), keyword("known").void()))).void();
     let experiments = (keyword("experiments"), winnow::token::one_of(|c: char| c.is_ascii_digit())).void();
     peek(alt((signal, initial, experiments))).parse_next(input).is_ok()
+}
+
+/// Whether one of the words stands here that say of a constant whether it is known, and begins no entry.
+pub(super) fn is_word_of_a_constant(input: &mut Text<'_>) -> bool {
+    let word = alt((keyword("known"), keyword("unknown")));
+    peek(word).parse_next(input).is_ok() && !begins(input)
 }
 
 /// Whether the text behind one of these words makes an entry of it, as far as its next signs tell: [`begins`] for those who read
@@ -113,10 +121,10 @@ fn signals(input: &mut Text<'_>) -> Read<Item> {
             Ok(target.names(indices)?.into_iter().map(one).collect())
         })
     };
-    let list: Vec<Vec<DeclaredSignal>> = cut_err(separated(1.., one, sign(",")))
+    let found: Vec<Vec<DeclaredSignal>> = cut_err(list("the name of a signal, as in u(t)", one))
         .context("a list of signals, as in u(t), v(t)")
         .parse_next(input)?;
-    let mut list = list.concat();
+    let mut list = found.concat();
     let (mut dimension, mut order) = (None, None);
     for one in list.iter_mut().rev() {
         match &one.dimension {
@@ -148,10 +156,10 @@ fn initial(input: &mut Text<'_>) -> Read<Item> {
             Ok(target.names(indices)?.into_iter().map(one).collect())
         })
     };
-    let list: Vec<Vec<(DeclaredInitial, bool)>> = cut_err(separated(1.., one, sign(",")))
+    let found: Vec<Vec<(DeclaredInitial, bool)>> = cut_err(list("the name of a state", one))
         .context("a list of states, as in 'initial x known' or 'initial x = 0'")
         .parse_next(input)?;
-    let list = list.concat();
+    let list = found.concat();
     let mut said = false;
     for (one, known) in list.iter().rev() {
         said = one.value.is_none() && (said || *known);

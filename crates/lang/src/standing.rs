@@ -3,9 +3,9 @@
 
 use super::grammar::{identifier, quoted, statement};
 use super::syntax::{ClaimBody, Statement};
-use palmistry_math::expression::parse::{Read, Text, keyword, sign, stop};
+use palmistry_math::expression::parse::{Read, Text, keyword, list, sign, stop};
 use palmistry_math::expression::syntax::Span;
-use winnow::combinator::{alt, cut_err, opt, preceded, separated};
+use winnow::combinator::{alt, cut_err, opt, preceded};
 use winnow::prelude::*;
 use winnow::stream::Location;
 
@@ -105,7 +105,7 @@ fn reference(input: &mut Text<'_>) -> Read<Reference> {
 
 /// `restates X, Y in "file"`, `consequence` or `example` behind the id of a claim.
 pub(super) fn basis(input: &mut Text<'_>) -> Read<Basis> {
-    let list = cut_err(separated(1.., reference, sign(",")));
+    let list = cut_err(list("the number or name of what is meant", reference));
     let given = alt((
         preceded(keyword("restates"), list).map(Basis::Restates),
         keyword("consequence").value(Basis::Consequence),

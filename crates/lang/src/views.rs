@@ -11,11 +11,12 @@ use super::syntax::Item;
 use super::written::in_one_line;
 use dashu::rational::RBig;
 use palmistry_math::expression::parse::{
-    Read, Text, assignments, conditions, equations, keyword, name, range, repeat, sign, stop, sum, target,
+    Read, Text, assignments, conditions, equations, keyword, list, name, range, repeat, sign, stop, sum,
+    target,
 };
 use palmistry_math::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
 use palmistry_math::expression::{NodeId, Symbol};
-use winnow::combinator::{alt, cut_err, opt, peek, preceded, separated};
+use winnow::combinator::{alt, cut_err, opt, peek, preceded};
 use winnow::prelude::*;
 use winnow::stream::Location;
 
@@ -216,7 +217,8 @@ fn map(input: &mut Text<'_>) -> Read<View> {
         Ok(Axis { name, low, high })
     };
     let at_axes = input.current_token_start();
-    let axes: Vec<Axis> = cut_err(separated(1.., axis, sign(","))).parse_next(input)?;
+    let axes: Vec<Axis> =
+        cut_err(list("a coordinate and its range, as in x in [0, 1]", axis)).parse_next(input)?;
     if axes.len() != 2 {
         return stop(at_axes, "two coordinates, as in x in [0, 1], y in [0, 2]", None);
     }
@@ -282,7 +284,8 @@ impl System {
             View::Set { title, conditions, is_pole, span } => {
                 if !self.set_titles.insert(title.clone()) {
                     let message = format!("there is a set \"{title}\" already");
-                    return Err(Problem::new(Code::Twice, span, message, "the second one"));
+                    return Err(Problem::new(Code::Twice, span, message, "the second one")
+                        .help("choose another title"));
                 }
                 let written = self.check_conditions(conditions)?;
                 self.sets.push(NamedSet {
@@ -300,19 +303,17 @@ impl System {
                     let (least, greatest) = (self.rational(low)?, self.rational(high)?);
                     if least >= greatest {
                         let message = format!("the range of '{}' has no width", name.text);
-                        return Err(Problem::new(
-                            Code::Range,
-                            &(low.span.start..high.span.end),
-                            message,
-                            "low above high",
-                        ));
+                        let span = low.span.start..high.span.end;
+                        return Err(Problem::new(Code::Range, &span, message, "low above high")
+                            .help("the low end comes first, as in [0, 1]"));
                     }
                     checked.push(CoordinateRange { name: name.text.clone(), low: least, high: greatest });
                 }
                 let [x, y] = checked.try_into().unwrap_or_else(|_| unreachable!("the grammar has two"));
                 if x.name == y.name {
                     let message = "the two coordinates are one";
-                    return Err(Problem::new(Code::View, &axes[1].name.span, message, "the second time"));
+                    return Err(Problem::new(Code::View, &axes[1].name.span, message, "the second time")
+                        .help("a map has two, as in x in [0, 1], y in [0, 2]"));
                 }
                 let at = self.point(at)?;
                 let order = order.as_ref().map(|order| self.word_length(order)).transpose()?;
@@ -411,7 +412,7 @@ impl System {
         }
         .ok_or_else(|| {
             let message = format!("the order of Lie derivatives is a number from 0 to {LONGEST_WORD}");
-            Problem::new(Code::Number, &order.span, message, "this is none")
+            Problem::new(Code::Number, &order.span, message, "this is none").help("as in order 2")
         })
     }
 }

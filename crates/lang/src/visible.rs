@@ -48,11 +48,15 @@ pub(super) fn visible(input: &mut Text<'_>) -> Read<Equation> {
     let at = input.current_token_start();
     let whole = cut_err(sum).parse_next(input)?;
     if !is_visible(&whole) {
-        return stop(at, "'observable(...)' by itself: it is a statement, and no number", None);
+        let help = "the states of a claim stand behind 'where', as in observable(x) where x = 0";
+        let what = "'observable(...)' by itself: it is a statement, and no number";
+        return stop(at, what, Some(help.to_owned()));
     }
     let at = input.current_token_start();
     if peek(opt(relation)).parse_next(input)?.is_some() {
-        return stop(at, "'where' or the end: what is observable is compared with nothing", None);
+        let help = "leave it out, as in observable(x); what is not so is unobservable(x)";
+        let what = "'where' or the end: what is observable is compared with nothing";
+        return stop(at, what, Some(help.to_owned()));
     }
     let span = whole.span.clone();
     Ok(Equation { left: whole.clone(), relation: Relation::Equal, right: whole, within: None, span })

@@ -8,10 +8,10 @@ use crate::nearest;
 use crate::signals::{Knowledge, knowledge, spread_knowledge};
 use dashu::rational::RBig;
 use palmistry_math::expression::parse::{
-    Read, Target, Text, blank, ends_a_line, loops, repeat, sign, stop, sum, target, within, word,
+    Read, Target, Text, blank, ends_a_line, list, loops, repeat, sign, stop, sum, target, within, word,
 };
 use palmistry_math::expression::syntax::{Expr, Loop, Name, Span};
-use winnow::combinator::{alt, cut_err, opt, preceded, separated};
+use winnow::combinator::{alt, cut_err, opt, preceded};
 use winnow::prelude::*;
 use winnow::stream::{Location, Stream};
 use winnow::token::take_while;
@@ -82,11 +82,11 @@ pub(crate) fn declared<'a>(with_values: bool) -> impl FnMut(&mut Text<'a>) -> Re
             let knowledge = if with_values { knowledge(input)? } else { None };
             Ok(DeclaredTarget { target, value, dimension, knowledge, loops: loops(input)? })
         };
-        let mut list: Vec<DeclaredTarget> = separated(1.., one, sign(",")).parse_next(input)?;
-        spread(&mut list);
-        spread_knowledge(&mut list);
+        let mut targets: Vec<DeclaredTarget> = list("a name", one).parse_next(input)?;
+        spread(&mut targets);
+        spread_knowledge(&mut targets);
         let mut found = Vec::new();
-        for DeclaredTarget { target, value, dimension, knowledge, loops } in &list {
+        for DeclaredTarget { target, value, dimension, knowledge, loops } in &targets {
             let knowledge = *knowledge;
             found.extend(repeat(input, loops, |indices| {
                 let value = value.as_ref().map(|value| indices.bind(value)).transpose()?;
@@ -176,7 +176,10 @@ fn primary(input: &mut Text<'_>) -> Read<Dimension> {
     let start = input.checkpoint();
     let Some((text, _)) = opt(word).parse_next(input)? else {
         input.reset(&start);
-        let help = "for instance length, velocity, kg, N*m or 1";
+        let help = match input.input.as_ref().starts_with('=') {
+            true => "write '=' alone",
+            false => "for instance length, velocity, kg, N*m or 1",
+        };
         return stop(at, "a dimension, as in length/time^2 or m/s^2", Some(help.to_owned()));
     };
     match meaning(text) {

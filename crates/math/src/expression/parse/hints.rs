@@ -1,51 +1,136 @@
 //! What may help where a text does not read: what people write by the habits of other languages, and how it is written here.
 
-use super::tokens::{Expected, ends_a_line};
+use super::tokens::{Expected, RESERVED, ends_a_line};
+use crate::expression::COMPOSED;
 use crate::number::Function;
 
 /// What is expected behind a state in a field.
 pub(super) const PRIME: &str = "' after the state";
 
-/// How it is written here, by what stands at the place and before it.
-const AT_THE_PLACE: [(&str, &str, &str); 34] = [
+/// How it is written here, by what stands before the place and at it.
+const AT_THE_PLACE: [(&str, &str, &str); 70] = [
+    ("/", "*", COMMENT),
+    ("(", "*", COMMENT),
+    ("", "(*", COMMENT),
+    (".", "..", "a formula goes on in the next line by itself: leave '...' out"),
     ("*", "*", "a power is written with '^', as in x^2"),
-    ("/", "/", "a comment begins with '#'"),
+    ("/", "/", COMMENT),
+    ("", "==>", IMPLIES),
+    ("", "=>", IMPLIES),
+    ("=", ">", "write '>='"),
+    ("=", "<", "write '<='"),
+    ("<", ">", UNEQUAL),
+    ("<", "<", MUCH_MORE),
+    (">", ">", MUCH_MORE),
     ("=", "=", "an equation has one '=', as in x = y"),
     ("", ":=", "write '=' alone"),
     (":", "=", "write '=' alone"),
     ("", "<-", "write '=' alone"),
     ("", "&", SEVERAL),
-    ("", "~", "write '=': approximately is said by 'within', as in x = 2 within 0.1"),
+    ("", "||", SEVERAL),
+    ("", "~=", UNEQUAL),
+    ("", "~", APPROXIMATELY),
+    ("]", "'", "a transpose is written transpose(M)"),
     (")", "'", "a prime stands behind the name of a state alone: a derivative along the drift f is L(f, x)"),
-    ("=", ">", "write '>='"),
-    ("=", "<", "write '<='"),
     ("", "|", "an absolute value is written abs(x), as in abs(omega)"),
     ("", "\\", "write functions and Greek letters without the backslash, as in sin(phi)"),
     ("", "{", "brackets are ( and ); a matrix is written [a, b; c, d]"),
-    ("", "%", "a comment begins with '#'"),
-    ("", "//", "a comment begins with '#'"),
+    ("", "%", COMMENT),
+    ("", "//", COMMENT),
     ("", ";", "an entry ends with its line: leave ';' out"),
-    ("", "\u{201c}", "use straight quotation marks, as in \"text\""),
-    ("", "\u{201d}", "use straight quotation marks, as in \"text\""),
-    ("", "\u{201e}", "use straight quotation marks, as in \"text\""),
-    ("", "\u{ab}", "use straight quotation marks, as in \"text\""),
-    ("", "\u{2018}", "use the straight mark ', as in x' = y"),
-    ("", "\u{2019}", "use the straight mark ', as in x' = y"),
-    ("", "\u{2032}", "use the straight mark ', as in x' = y"),
-    ("", "\u{2212}", "use the minus sign of the keyboard, '-'"),
-    ("", "\u{2013}", "use the minus sign of the keyboard, '-'"),
-    ("", "\u{b7}", "a product is written with '*'"),
-    ("", "\u{d7}", "a product is written with '*'"),
-    ("", "\u{22c5}", "a product is written with '*'"),
+    ("", "$", "formulas stand without '$'"),
+    ("", ".*", WITHOUT_A_DOT),
+    ("", "./", WITHOUT_A_DOT),
+    ("", ".^", WITHOUT_A_DOT),
+    ("", "...", "a formula goes on in the next line by itself: leave '...' out"),
+    ("", "?", NO_CASES),
+    ("", "\u{201c}", STRAIGHT_MARKS),
+    ("", "\u{201d}", STRAIGHT_MARKS),
+    ("", "\u{201e}", STRAIGHT_MARKS),
+    ("", "\u{ab}", STRAIGHT_MARKS),
+    ("", "\u{2018}", STRAIGHT_PRIME),
+    ("", "\u{2019}", STRAIGHT_PRIME),
+    ("", "\u{2032}", STRAIGHT_PRIME),
+    ("", "\u{2212}", MINUS),
+    ("", "\u{2013}", MINUS),
+    ("", "\u{b7}", PRODUCT),
+    ("", "\u{d7}", PRODUCT),
+    ("", "\u{2022}", PRODUCT),
+    ("", "\u{2217}", PRODUCT),
+    ("", "\u{22c5}", PRODUCT),
+    ("", "\u{f7}", "a quotient is written with '/'"),
     ("", "\u{221a}", "a root is written sqrt(x)"),
     ("", "\u{2264}", "write '<='"),
     ("", "\u{2265}", "write '>='"),
+    ("", "\u{2260}", UNEQUAL),
+    ("", "\u{2248}", APPROXIMATELY),
+    ("", "\u{2261}", "an equation has one '=', as in x = y"),
+    ("", "\u{2208}", "a range is written with 'in', as in x in [0, 1]"),
+    ("", "\u{211d}", "all numbers are real: leave it out"),
+    ("", "\u{221e}", "it is called 'infinity'"),
+    ("", "\u{b1}", TOLERANCE),
+    ("", "\u{b0}", "angles are in radians: write sin(x*pi/180)"),
+    ("", "\u{bd}", "write 1/2"),
+    ("", "\u{2202}", DIFFERENTIAL),
+    ("", "\u{2207}", DIFFERENTIAL),
+    ("", "\u{222b}", "an integral is a state of its own, as in z' = x"),
+    ("", "\u{2016}", "a norm is written sqrt(dot(v, v))"),
+    ("", "\u{2200}", FOR_ALL),
+    ("", "\u{2203}", FOR_ALL),
     ("", "\u{b2}", "a power is written with '^', as in x^2"),
     ("", "\u{b3}", "a power is written with '^', as in x^3"),
 ];
 
+const APPROXIMATELY: &str = "write '=': approximately is said by 'within', as in x = 2 within 0.1";
+const COMMENT: &str = "a comment begins with '#'";
+const DIFFERENTIAL: &str = "a differential is written d(e, x), the row of all derivatives d(e), a derivative along the drift L(f, x)";
+const FOR_ALL: &str = "a claim is about all states and values for which its terms exist: leave it out";
+const IMPLIES: &str =
+    "what is implied is the claim, and its conditions stand behind 'where', as in claim a: x = y where k = 0";
+const MINUS: &str = "use the minus sign of the keyboard, '-'";
+const MUCH_MORE: &str = "write '<' or '>' once: nothing is much greater here";
+const NO_CASES: &str =
+    "there is no 'if': write max(a, b), min(a, b), abs(a) or sign(a), or a claim for each case with 'where'";
+const PRODUCT: &str = "a product is written with '*'";
 /// Of statements that are to hold together.
 const SEVERAL: &str = "of several statements each is a claim of its own; conditions stand behind 'where', with ',' between them";
+const STRAIGHT_MARKS: &str = "use straight quotation marks, as in \"text\"";
+const STRAIGHT_PRIME: &str = "use the straight mark ', as in x' = y";
+/// Of a number with its uncertainty.
+pub(super) const TOLERANCE: &str = "a value is one number: a tolerance stands behind 'within', a range in an entry of its own, as in sample k in [1.9, 2.1]";
+const UNEQUAL: &str = "unequal is written '!=', as in x != 0";
+const WITHOUT_A_DOT: &str = "write '*', '/' and '^' without the dot";
+
+/// By characters that nothing here is written with, from one to another.
+const CHARACTERS: [(char, char, &str); 12] = [
+    ('\u{2080}', '\u{209c}', "an index is written x_1, or x[1] for the component of a vector"),
+    ('\u{2070}', '\u{207f}', "a power is written with '^', as in x^2 or x^(-1)"),
+    ('\u{ff01}', '\u{ff5e}', "type it with the plain keyboard: letters and signs of full width are others"),
+    ('\u{0}', '\u{1f}', "a control character stands here: delete it"),
+    ('\u{7f}', '\u{9f}', "a control character stands here: delete it"),
+    ('\u{ad}', '\u{ad}', "an invisible character stands here: delete it"),
+    ('\u{200b}', '\u{200f}', "an invisible character stands here: delete it"),
+    ('\u{2060}', '\u{2064}', "an invisible character stands here: delete it"),
+    ('\u{feff}', '\u{feff}', "an invisible character stands here: delete it"),
+    ('\u{c0}', '\u{24f}', OF_NAMES),
+    ('\u{300}', '\u{36f}', OF_NAMES),
+    ('\u{400}', '\u{1fff}', OF_NAMES),
+];
+
+const OF_NAMES: &str = "this character belongs to no name: names have the letters a-z, Greek letters, digits and '_', as in x_dot or x_hat";
+
+/// By the word at the place, or by the one before it.
+const WORDS: [(&str, &str); 5] = [
+    ("if then else", NO_CASES),
+    ("and or", SEVERAL),
+    ("forall exists", "a claim is about all states and values for which its terms exist: leave 'forall' out"),
+    ("implies iff", IMPLIES),
+    ("not", UNEQUAL),
+];
+
+fn is_word(c: char) -> bool {
+    c.is_ascii_alphanumeric() || c == '_'
+}
 
 /// What may help by what stands at the place.
 fn at_the_place(before: &str, rest: &str) -> Option<String> {
@@ -53,66 +138,96 @@ fn at_the_place(before: &str, rest: &str) -> Option<String> {
     let fixed = |(left, right, help): &(&str, &str, &str)| {
         (line.ends_with(left) && rest.starts_with(right)).then(|| (*help).to_owned())
     };
-    let ends = |behind: &str| {
-        let behind = behind.trim_start_matches(' ');
-        behind.is_empty() || behind.starts_with(ends_a_line)
-    };
-    let comma = || {
-        let is_last = rest.strip_prefix(',').is_some_and(ends);
-        is_last.then(|| "an entry ends with its line: leave ',' out".to_owned())
+    let next = rest.chars().next();
+    let of_characters = |(from, to, help): &(char, char, &str)| {
+        next.is_some_and(|c| !ends_a_line(c) && (*from..=*to).contains(&c)).then(|| (*help).to_owned())
     };
     let closes = || {
         let is_more = rest.starts_with(')') && line.matches(')').count() >= line.matches('(').count();
         is_more.then(|| "this bracket closes none: each ')' needs its '('".to_owned())
     };
-    let found = AT_THE_PLACE.iter().find_map(fixed).or_else(|| decimal_comma(line, rest));
-    found.or_else(closes).or_else(|| of_lie_derivatives(line, rest)).or_else(comma)
+    let found = of_numbers(line, rest).or_else(|| AT_THE_PLACE.iter().find_map(fixed));
+    found
+        .or_else(|| CHARACTERS.iter().find_map(of_characters))
+        .or_else(closes)
+        .or_else(|| by_words(line, rest))
+        .or_else(|| of_lists(line, rest))
+}
+
+/// A comma that ends its line, and entries of a row without one.
+fn of_lists(line: &str, rest: &str) -> Option<String> {
+    let ends = |behind: &str| {
+        let behind = behind.trim_start_matches(' ');
+        behind.is_empty() || behind.starts_with(ends_a_line)
+    };
+    if rest.strip_prefix(',').is_some_and(ends) {
+        return Some("an entry ends with its line: leave ',' out".to_owned());
+    }
+    let is_open = line.matches('[').count() > line.matches(']').count();
+    let is_next = rest.starts_with(|c: char| is_word(c) || c == '(') && line.trim_end() != line;
+    (is_open && is_next).then(|| {
+        "entries of a row and the ends of a range have ',' between them, rows of a matrix ';', as in [1, 2; 3, 4]".to_owned()
+    })
 }
 
 fn is_function(name: &str) -> bool {
     Function::ALL.into_iter().any(|function| function.name() == name)
+        || COMPOSED.into_iter().any(|(composed, ..)| composed == name)
+        || ["tan", "cot", "sec", "csc"].contains(&name)
 }
 
-fn decimal_comma(line: &str, rest: &str) -> Option<String> {
+/// How numbers are written elsewhere.
+fn of_numbers(line: &str, rest: &str) -> Option<String> {
     let digit = |c: char| c.is_ascii_digit();
-    let is_one = line.ends_with(digit) && rest.strip_prefix(',').is_some_and(|rest| rest.starts_with(digit));
-    is_one.then(|| "a decimal point is written '.', as in 0.5".to_owned())
+    let begins_with_digit = |text: &str| text.starts_with(digit);
+    let separated = line
+        .strip_suffix(',')
+        .filter(|_| begins_with_digit(rest))
+        .or_else(|| rest.strip_prefix(',').is_some_and(begins_with_digit).then_some(line));
+    let number = |line: &str| line.len() - line.trim_end_matches(|c: char| digit(c) || c == '.').len();
+    if let Some(whole) = separated.filter(|whole| whole.ends_with(digit)) {
+        let fraction = rest.trim_start_matches(',');
+        let count = fraction.len() - fraction.trim_start_matches(digit).len();
+        // 1.000,5 and 1,000 have separators of thousands
+        let has_thousands = count == 3 || whole[whole.len() - number(whole)..].contains('.');
+        let help = "a number has no separators, as in 1000";
+        let decimal = "a decimal point is written '.', as in 0.5";
+        return Some(if has_thousands { format!("{decimal}; {help}") } else { decimal.to_owned() });
+    }
+    if !line.ends_with(digit) || number(line) == 0 || line[..line.len() - number(line)].ends_with(is_word) {
+        return None;
+    }
+    let word = &rest[..rest.find(|c| !is_word(c)).unwrap_or(rest.len())];
+    let help = match word.chars().next() {
+        Some('_' | 'x' | 'X') => "a number is written in decimal digits without separators, as in 1000",
+        Some('d' | 'D')
+            if word.len() == 1 && rest[1..].starts_with(['+', '-']) || word[1..].starts_with(digit) =>
+        {
+            "an exponent is written with 'e', as in 2e-3"
+        }
+        Some('i' | 'j') if word.len() == 1 => "there are no complex numbers",
+        None if rest.starts_with('%') => {
+            "a percentage is written as a fraction, as in 0.5 for 50%; a comment begins with '#'"
+        }
+        None if rest.strip_prefix('.').is_some_and(begins_with_digit) => {
+            "a number has one decimal point, as in 1.5"
+        }
+        _ => return None,
+    };
+    Some(help.to_owned())
 }
 
 /// By the words of the line as far as the place.
-fn of_lie_derivatives(line: &str, rest: &str) -> Option<String> {
-    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+fn by_words(line: &str, rest: &str) -> Option<String> {
     let words: Vec<&str> = line.split(|c| !is_word(c)).filter(|word| !word.is_empty()).collect();
-    let at_word: String = rest.chars().take_while(|c| is_word(*c)).collect();
-    let has = |word: &str| words.contains(&word) || at_word == word;
-    if ["if", "then", "else"].into_iter().any(has) {
-        return Some(
-            "there is no 'if': write max(a, b), min(a, b), abs(a) or sign(a), or a claim for each case with 'where'"
-                .to_owned(),
-        );
+    let at_word: &str = &rest[..rest.find(|c| !is_word(c)).unwrap_or(rest.len())];
+    let last = words.last().copied().unwrap_or_default();
+    let met = |word: &str| word == at_word || word == last || word == "if" && words.contains(&word);
+    if let Some((_, help)) = WORDS.iter().find(|(all, _)| all.split(' ').any(met)) {
+        return Some((*help).to_owned());
     }
-    if matches!(at_word.as_str(), "and" | "or") || matches!(words.last(), Some(&("and" | "or"))) {
-        return Some(SEVERAL.to_owned());
-    }
-    if matches!(words.last(), Some(&("forall" | "all"))) || matches!(at_word.as_str(), "forall") {
-        return Some(
-            "a claim is about all states and values for which its terms exist: leave 'forall' out".to_owned(),
-        );
-    }
-    if at_word == "where" && words.last() == Some(&"everywhere") {
+    if at_word == "where" && last == "everywhere" {
         return Some("'where' and its conditions stand before 'everywhere'".to_owned());
-    }
-    let is_fault = |word: &&str| matches!(*word, "erratum" | "damaged" | "scan" | "convention" | "loose");
-    if (at_word == "at" || words.contains(&"at")) && words.first().is_some_and(is_fault) {
-        return Some(
-            "where it stands is a text in quotation marks behind its name, as in erratum 4.2 at \"page 57\": ..."
-                .to_owned(),
-        );
-    }
-    if at_word == "at" || words.last() == Some(&"at") {
-        return Some(
-            "a condition of a claim is written with 'where', as in '... where omega = 0'".to_owned(),
-        );
     }
     if let Some((base, power)) = line.rsplit_once('^')
         && rest.starts_with('(')
@@ -125,94 +240,29 @@ fn of_lie_derivatives(line: &str, rest: &str) -> Option<String> {
         ));
     }
     // an index runs in something else: 'for i in 1..3'
-    if words.last() == Some(&"in") && !rest.starts_with('[') && !words.contains(&"for") {
+    if last == "in" && !rest.starts_with('[') && !words.contains(&"for") {
         return Some("a range has square brackets, as in x in [-1, 1]".to_owned());
     }
-    of_an_entry(&words, line, rest)
+    None
 }
 
-/// By how a line begins that is an entry of another form.
-fn of_an_entry(words: &[&str], line: &str, rest: &str) -> Option<String> {
-    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let is_equation = rest.starts_with('=') && !rest.starts_with("==");
-    let named: &str = &rest[..rest.find(|c| !is_word(c)).unwrap_or(rest.len())];
-    match words {
-        ["system"] if !named.is_empty() => {
-            Some(format!("a title stands in quotation marks, as in system \"{named}\""))
-        }
-        ["output", name] if is_equation => Some(format!(
-            "an output is an expression: name it by a definition, let {name} = ..., and write output {name}"
-        )),
-        ["claim", of] if is_equation => {
-            Some(format!("a claim has a name and a colon, as in claim a: {of} = ..."))
-        }
-        [
-            "claim",
-            "observable" | "unobservable" | "identifiable" | "unidentifiable" | "rank" | "solutions",
-        ] => Some(format!(
-            "a claim has a name and a colon, as in claim a: {}...",
-            line.trim_start().split_once(' ').map_or("", |(_, of)| of)
-        )),
-        ["claim", _, word @ ("observable" | "unobservable" | "identifiable" | "unidentifiable"), ..] => {
-            Some(format!("the unknowns stand in brackets, as in {word}(x, y)"))
-        }
-        ["state" | "param" | "angle" | "use" | "output" | "sample" | "assume"] if rest.starts_with(':') => {
-            Some(format!("leave ':' out behind '{}'", words[0]))
-        }
-        ["drift" | "input" | "field", _] if rest.starts_with(':') => {
-            Some("leave ':' out behind the name".to_owned())
-        }
-        ["input", name] if rest.starts_with('(') => {
-            Some(format!("a signal that drives the system is declared, as in known {name}(t)"))
-        }
-        ["state", .., name] if is_equation => {
-            Some(format!("an initial condition is an entry of its own: initial {name} = ..."))
-        }
-        ["state" | "angle", ..] if rest.starts_with('(') => {
-            Some("a state is named alone, without (t)".to_owned())
-        }
-        ["state" | "param" | "angle", .., name] if !named.is_empty() => {
-            Some(format!("names stand with ',' between them, as in {name}, {named}"))
-        }
-        ["param", .., name] if rest.starts_with('[') => {
-            Some(format!("a range is an entry of its own, as in sample {name} in [1, 2]"))
-        }
-        ["sample", .., name] if is_equation || named == "from" => {
-            Some(format!("a range has square brackets, as in {name} in [-1, 1]"))
-        }
-        ["initial", .., name] if rest.starts_with('(') => {
-            Some(format!("as in initial {name} = 1, without brackets"))
-        }
-        ["known" | "unknown", .., name] => Some(format!(
-            "a signal is one of time, as in {0} {name}(t); a constant is declared as in param {name} {0}",
-            words[0]
-        )),
-        ["param", .., name] if rest.starts_with(['<', '>']) => {
-            Some(format!("what is assumed of it is an entry of its own, as in assume {name} > 0"))
-        }
-        ["measure" | "measured" | "measurement" | "observe" | "observed" | "y" | "meas"] => {
-            Some("an output is written 'output', as in output x".to_owned())
-        }
-        [name] if line.trim_start() == line && is_equation => Some(format!(
-            "a rate of change is written with a prime, as in {name}' = ..., an abbreviation as let {name} = ..., and an output as output ..."
-        )),
-        [] if line.trim().is_empty() && !named.is_empty() => {
-            let behind = rest[named.len()..].trim_start_matches('\'').trim_start();
-            let is_rate = rest[named.len()..].starts_with('\'') && behind.starts_with('=');
-            is_rate.then(|| {
-                format!(
-                    "a rate of change stands under its field: write 'drift f' on the line before {named}'"
-                )
-            })
-        }
-        _ => None,
-    }
-}
+/// Names of the derivative by time.
+const DERIVATIVES: [&str; 7] = ["d", "D", "Dt", "der", "diff", "deriv", "ddt"];
 
 /// What may help where the prime of a rate of change is missing: the name that should have one ends before the place.
 fn of_a_rate(before: &str, rest: &str) -> Option<String> {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let prime = |state: &str| Some(format!("a rate of change is written with a prime, as in {state}' = ..."));
     let named = before.trim_end();
+    let index = named.strip_suffix(']').and_then(|named| named.rsplit_once('['));
+    let step = |state: &str| Some(format!("the value after one step is written {state}+ = ..."));
+    if let Some((vector, index)) = index {
+        let vector = vector.rsplit(|c| !is_word(c)).next().unwrap_or_default();
+        if DERIVATIVES.contains(&vector) {
+            return prime(index);
+        }
+        return if index.ends_with("+1") || index.ends_with("+ 1") { step(vector) } else { None };
+    }
     let begin = named
         .rfind(|c| !is_word(c))
         .map_or(0, |end| end + named[end..].chars().next().map_or(1, char::len_utf8));
@@ -221,31 +271,91 @@ fn of_a_rate(before: &str, rest: &str) -> Option<String> {
         line.trim_end().rsplit(|c: char| !is_word(c)).next().filter(|_| !line.trim().is_empty())
     {
         // behind an expression stands no state whose rate follows
-        let help = match is_function(left) {
-            true => format!("a function has its argument in brackets, as in {left}({name})"),
-            false if left.is_empty() => "a product is written with '*'".to_owned(),
-            false => format!("a product is written with '*', as in {left}*{name}"),
-        };
-        return of_lie_derivatives(line, name).or(Some(help));
+        return by_words(line, name).or_else(|| Some(product(left, name)));
+    }
+    let inner = rest.strip_prefix('(').and_then(|rest| rest.split(')').next());
+    if rest.starts_with("^+") || inner.is_some_and(|inner| inner.ends_with("+1") || inner.ends_with("+ 1")) {
+        return step(name);
+    }
+    if let Some(state) = name.strip_suffix("_next").filter(|_| rest.starts_with('=')) {
+        return step(state);
+    }
+    if name == "end" {
+        return Some("an entry ends by itself: leave 'end' out".to_owned());
+    }
+    if let Some(sign) = ["+=", "-=", "*=", "/="].into_iter().find(|sign| rest.starts_with(sign)) {
+        let sign = &sign[..1];
+        return Some(format!("write {name}' = v for a rate, {name}+ = {name} {sign} v for a step"));
+    }
+    if rest.starts_with(['*', '/', '+', '-']) && !rest.starts_with("/dt") {
+        let state = rest.split('\'').next().and_then(|left| left.rsplit(|c| !is_word(c)).next());
+        let state = state.filter(|state| !state.is_empty()).unwrap_or(name);
+        return Some(format!("a rate stands alone on the left, as in {state}' = ..."));
     }
     let dotted = name.strip_suffix("_dot").or_else(|| name.strip_suffix("dot"));
-    let derived = match (name, rest) {
-        ("d", rest) => rest.strip_prefix('(').and_then(|rest| rest.split(')').next()),
-        (name, rest) if rest.starts_with("/dt") => name.strip_prefix('d'),
+    let derived = match inner {
+        Some(inner) if DERIVATIVES.contains(&name) => inner.split(',').next(),
+        _ if rest.starts_with("/dt") => name.strip_prefix('d'),
         _ => None,
     };
     let state = dotted.or(derived).map(str::trim).filter(|state| !state.is_empty());
-    let state = state.or(rest.starts_with('=').then_some(name))?;
-    Some(format!("a rate of change is written with a prime, as in {state}' = ..."))
+    prime(state.or(rest.starts_with('=').then_some(name))?)
+}
+
+/// A product of two names, or of something else.
+fn product(left: &str, right: &str) -> String {
+    match is_function(left) {
+        true => format!("a function has its argument in brackets, as in {left}({right})"),
+        false if left.is_empty() || right.is_empty() => PRODUCT.to_owned(),
+        false => format!("{PRODUCT}, as in {left}*{right}"),
+    }
+}
+
+/// A word of the language where a name is meant, or a product without its sign.
+fn of_a_product(before: &str, rest: &str, what: &str) -> Option<String> {
+    let word = |text: &str| text[..text.find(|c| !is_word(c)).unwrap_or(text.len())].to_owned();
+    let right = word(rest);
+    if RESERVED.contains(&right.as_str()) {
+        let help = format!("'{right}' is a word of the language: choose another name, as in {right}_1");
+        let is_name = ["a name", "the name", "a list of", "the field's name", "a state", "a number, a name"];
+        return is_name.into_iter().any(|name| what.starts_with(name)).then_some(help);
+    }
+    let left = before.trim_end();
+    let is_factor = left.ends_with(|c: char| is_word(c) || matches!(c, ')' | ']' | '.'))
+        && rest.starts_with(|c: char| c.is_alphanumeric() || c == '_' || c == '(');
+    let joins = ["operator", "list of arguments"].into_iter().any(|part| what.contains(part));
+    (is_factor && joins).then(|| {
+        let left = &left[left
+            .rfind(|c| !is_word(c))
+            .map_or(0, |end| end + left[end..].chars().next().map_or(1, char::len_utf8))..];
+        let left = if left.starts_with(|c: char| c.is_ascii_digit()) { "" } else { left };
+        product(left, &right)
+    })
 }
 
 impl Expected {
-    /// With the advice for what people write by the habits of other languages, where the text has it at the place.
-    pub fn hinted(self, text: &str) -> Expected {
+    /// With the advice for what people write by the habits of other languages, where the text has it at the place and nobody has
+    /// better advice.
+    pub fn with_habits(self, text: &str) -> Expected {
         let Some((before, rest)) = text.split_at_checked(self.at) else { return self };
-        let rate = if self.what.starts_with(PRIME) { of_a_rate(before, rest) } else { None };
-        let help = at_the_place(before, rest).or(rate).or(self.help);
+        let rate = || if self.what.starts_with(PRIME) { of_a_rate(before, rest) } else { None };
+        let help = self.help.clone().or_else(|| at_the_place(before, rest)).or_else(rate);
         Expected { help, ..self }
+    }
+
+    /// The same, by how numbers are written elsewhere alone.
+    pub fn with_habits_of_numbers(self, text: &str) -> Expected {
+        let Some((before, rest)) = text.split_at_checked(self.at) else { return self };
+        let line = before.rsplit(ends_a_line).next().unwrap_or_default();
+        Expected { help: self.help.or_else(|| of_numbers(line, rest)), ..self }
+    }
+
+    /// The same, and where no habit is known the advice for a product without its sign.
+    pub fn hinted(self, text: &str) -> Expected {
+        let found = self.with_habits(text);
+        let Some((before, rest)) = text.split_at_checked(found.at) else { return found };
+        let help = found.help.clone().or_else(|| of_a_product(before, rest, &found.what));
+        Expected { help, ..found }
     }
 }
 
@@ -256,13 +366,35 @@ mod tests {
     /// Anything may stand at a place, and a place may be no boundary of characters.
     #[test]
     fn no_text_is_too_strange() {
-        let texts =
-            ["", "\u{3c6}", "d(", "  \u{2032}x", "x y", "x\u{85}y\u{2028}z", "# \u{201c}\nif", "in (", "1,2"];
+        let texts = [
+            "",
+            "\u{3c6}",
+            "d(",
+            "  \u{2032}x",
+            "x y",
+            "x\u{85}y\u{2028}z",
+            "# \u{201c}\nif",
+            "in (",
+            "1,2",
+            "2d",
+            "1\u{e9}",
+            "x[\u{e9}]",
+            "]",
+            "[",
+            "\u{e9}]",
+            "1.2.",
+            "x\u{302}_dot",
+            "1dx",
+            "2d-",
+            ",1",
+            "\u{e9},1",
+        ];
         for text in texts {
             for at in 0..=text.len() + 2 {
-                for what in [PRIME, "a name"] {
+                for what in [PRIME, "a name or an operator"] {
                     let expected = Expected { what: what.to_owned(), at, help: Some("kept".to_owned()) };
-                    assert!(expected.hinted(text).help.is_some(), "{text:?} at {at}");
+                    assert_eq!(expected.hinted(text).help.as_deref(), Some("kept"), "{text:?} at {at}");
+                    let _ = Expected { what: what.to_owned(), at, help: None }.hinted(text);
                 }
             }
         }

@@ -3,7 +3,7 @@
 //! meets any: a component is a symbol like others, with the name `x[3]`.
 
 use super::tokens::{
-    Depth, Expected, Read, Text, bare_name, blank, closing, keyword, name, sign, stop, suffix, within,
+    Depth, Expected, Read, Text, bare_name, blank, closing, helped, keyword, name, sign, stop, suffix, within,
 };
 use super::{cut_err, opt, read_all, sum};
 use crate::expression::syntax::{Equation, Expr, ExprKind, Indexed, Loop, Name, Place, Span, Whole};
@@ -351,10 +351,10 @@ fn over(input: &mut Text<'_>) -> Read<Loop> {
     if index.text.contains('.') {
         return stop(index.span.start, "an index and its range, as in i in 1..20", None);
     }
-    cut_err(keyword("in")).context("'in' and a range, as in i in 1..20").parse_next(input)?;
-    let from = whole(input)?;
-    cut_err(sign("..")).context("'..' and the last number of the range, as in 1..20").parse_next(input)?;
-    let to = whole(input)?;
+    let help = "as in sum(i in 1..3, x[i]); a line for each index ends with 'for i in 1..3'";
+    helped(help, cut_err(keyword("in")).context("'in' and a range, as in i in 1..20")).parse_next(input)?;
+    let dots = cut_err(sign("..")).context("'..' and the last number of the range, as in 1..20");
+    let (from, _, to) = helped(help, (whole, dots, whole)).parse_next(input)?;
     input.state.indices.borrow_mut().push(index.clone());
     Ok(Loop { index, from, to })
 }
@@ -419,7 +419,8 @@ fn place(input: &mut Text<'_>) -> Read<Option<Place>> {
         let help = "name several vectors, one for each row";
         return stop(at, "']': a vector has one index", Some(help.to_owned()));
     }
-    cut_err(literal("]").void()).context("']' or '..'").parse_next(input)?;
+    let help = "a component of a vector is written x[3], a range of them x[1..3]";
+    helped(help, cut_err(literal("]").void()).context("']' or '..'")).parse_next(input)?;
     if let Place::Range(from, to) = &place
         && from.value().and(to.value()).is_some()
     {
@@ -463,6 +464,10 @@ pub fn moved(input: &mut Text<'_>) -> Read<(Target, bool)> {
             return stop(at, what, Some(help));
         }
         blank(input)?;
+        if found.suffix.contains('\'') && !input.input.as_ref().starts_with('=') {
+            let help = format!("a rate stands alone on the left, as in {}{} = ...", found.name, found.suffix);
+            return stop(at, "'=' and the rate of change", Some(help));
+        }
         return Ok((found, true));
     }
     let suffix = found.suffix.clone();

@@ -13,8 +13,8 @@ pub use tokens::Expected;
 use tokens::{DEEPEST, closing, number};
 #[doc(hidden)]
 pub use tokens::{
-    Depth, RESERVED, Read, SPECIAL, Text, UNDECLARABLE, blank, ends_a_line, keyword, name, sign, stop,
-    within, word,
+    Depth, RESERVED, Read, SPECIAL, Text, UNDECLARABLE, blank, ends_a_line, helped, keyword, list, name,
+    sign, stop, within, word,
 };
 use winnow::combinator::{alt, cut_err, not, opt, preceded, separated};
 use winnow::error::ErrMode;
@@ -38,7 +38,7 @@ fn matrix(input: &mut Text<'_>) -> Read<Expr> {
     sign("[").parse_next(input)?;
     let row = |input: &mut Text<'_>| -> Read<Vec<Expr>> {
         input.state.in_row.set(true);
-        separated(1.., sum, sign(",")).map(spread).parse_next(input)
+        list("an entry of the row", sum).map(spread).parse_next(input)
     };
     let rows: Vec<Vec<Expr>> = within(input, cut_err(separated(1.., row, sign(";"))))?;
     let end = cut_err(closing("]"))
@@ -66,7 +66,7 @@ fn name_or_call(input: &mut Text<'_>) -> Read<Expr> {
     if ["sum", "product"].contains(&name.as_str()) {
         return fold(input, &name, span.start);
     }
-    let arguments: Vec<Expr> = within(input, cut_err(separated(1.., sum, sign(","))))?;
+    let arguments: Vec<Expr> = within(input, cut_err(list("an argument", sum)))?;
     let end = cut_err(closing(")")).context("')' or ',' in the list of arguments").parse_next(input)?;
     Ok(Expr { kind: ExprKind::Call(name, spread(arguments)), span: span.start..end })
 }
@@ -84,9 +84,9 @@ pub fn assignments(input: &mut Text<'_>) -> Read<(Vec<(Name, Expr)>, usize)> {
         })
     };
     cut_err(sign("{")).context("'{' and a list of name = value").parse_next(input)?;
-    let list: Vec<Vec<(Name, Expr)>> = within(input, cut_err(separated(1.., one, sign(","))))?;
+    let found: Vec<Vec<(Name, Expr)>> = within(input, cut_err(list("a name to give a value to", one)))?;
     let end = cut_err(closing("}")).context("'}' or ','").parse_next(input)?;
-    Ok((list.concat(), end))
+    Ok((found.concat(), end))
 }
 
 fn primary(input: &mut Text<'_>) -> Read<Expr> {
@@ -210,6 +210,17 @@ pub fn sum(input: &mut Text<'_>) -> Read<Expr> {
         let at = input.current_token_start();
         let joins = alt((literal("+").value(false), literal("-").value(true)));
         let Some(minus) = opt(joins).parse_next(input)? else { break };
+        // `2 +- 0.1` is a tolerance elsewhere
+        let is_tolerance = !minus
+            && input
+                .input
+                .as_ref()
+                .strip_prefix('-')
+                .is_some_and(|behind| end < at || behind.starts_with(|c: char| c.is_whitespace()));
+        if is_tolerance {
+            let help = format!("{}; a negative term is written a + (-b)", hints::TOLERANCE);
+            return stop(at, "one sign between two terms", Some(help));
+        }
         // `[1 -2]` is a difference here, and two entries elsewhere
         let joined = input.current_token_start();
         blank(input)?;
@@ -311,8 +322,8 @@ pub fn conditions(input: &mut Text<'_>) -> Read<Vec<Equation>> {
             Ok(all)
         })
     };
-    let list: Vec<Vec<Equation>> = separated(1.., one, sign(",")).parse_next(input)?;
-    Ok(list.concat())
+    let found: Vec<Vec<Equation>> = list("a relation", one).parse_next(input)?;
+    Ok(found.concat())
 }
 
 /// `[low, high]`, and where it ends.

@@ -29,6 +29,9 @@ pub struct Depth {
 /// More brackets within brackets than this are refused: nobody means them.
 pub(super) const DEEPEST: usize = 120;
 
+/// What is expected where no parser says it.
+const NOTHING_SAID: &str = "something else";
+
 /// What was expected at a place in the text.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("expected {what}")]
@@ -45,7 +48,7 @@ impl<'a> ParserError<Text<'a>> for Expected {
     type Inner = Self;
 
     fn from_input(input: &Text<'a>) -> Self {
-        Expected { what: "something else".to_owned(), at: input.current_token_start(), help: None }
+        Expected { what: NOTHING_SAID.to_owned(), at: input.current_token_start(), help: None }
     }
     fn or(self, other: Self) -> Self {
         // the branch that came further knows better
@@ -66,7 +69,7 @@ impl<'a> AddContext<Text<'a>, &'static str> for Expected {
         // name the whole only where nothing inside it was recognised
         let mut begin = *input;
         begin.reset(start);
-        if self.at == begin.current_token_start() || self.what == "something else" {
+        if self.at == begin.current_token_start() || self.what == NOTHING_SAID {
             self.what = what.to_owned();
         }
         self
@@ -235,6 +238,54 @@ pub fn word<'a>(input: &mut Text<'a>) -> Read<(&'a str, Span)> {
 /// A closing bracket, and the blank after it; where the bracket ends.
 pub(super) fn closing<'a>(text: &'static str) -> impl Parser<Text<'a>, usize, ErrMode<Expected>> {
     (literal(text).span(), blank).map(|(span, ())| span.end)
+}
+
+/// The same, with advice where it cannot be read and has none of its own.
+pub fn helped<'a, T>(
+    help: &'static str,
+    mut parser: impl Parser<Text<'a>, T, ErrMode<Expected>>,
+) -> impl Parser<Text<'a>, T, ErrMode<Expected>> {
+    move |input: &mut Text<'a>| {
+        parser.parse_next(input).map_err(|error| {
+            error.map(|expected: Expected| Expected {
+                help: expected.help.clone().or_else(|| Some(help.to_owned())),
+                ..expected
+            })
+        })
+    }
+}
+
+/// One or more, with commas between them. Behind a comma another one has to stand, unless the comma ends its line: then what
+/// stands in the next one belongs to something else, and the comma is left for others to wonder at.
+pub fn list<'a, T>(
+    what: &'static str,
+    mut one: impl Parser<Text<'a>, T, ErrMode<Expected>>,
+) -> impl Parser<Text<'a>, Vec<T>, ErrMode<Expected>> {
+    move |input: &mut Text<'a>| {
+        let mut found = vec![one.parse_next(input)?];
+        loop {
+            let comma = input.checkpoint();
+            if opt(literal(",")).parse_next(input)?.is_none() {
+                return Ok(found);
+            }
+            let behind = input.input.as_ref().split(ends_a_line).next().unwrap_or_default().trim_start();
+            let ends_line = behind.is_empty() || behind.starts_with('#');
+            blank(input)?;
+            match one.parse_next(input) {
+                Ok(next) => found.push(next),
+                Err(ErrMode::Backtrack(_)) if ends_line => {
+                    input.reset(&comma);
+                    return Ok(found);
+                }
+                Err(ErrMode::Backtrack(error)) => {
+                    let is_named = error.what != NOTHING_SAID;
+                    let what = if is_named { error.what } else { what.to_owned() };
+                    return Err(ErrMode::Cut(Expected { what, ..error }));
+                }
+                Err(error) => return Err(error),
+            }
+        }
+    }
 }
 
 /// One of the words of the language, and the blank after it.
