@@ -47,6 +47,7 @@ const ADVICE: &[(&str, &str, &str, &str)] = &[
     ("param-value", "=", "?", "a constant without a value is declared as in param {name} unknown"),
     ("param-value let-value", "=", "\" '", "numbers stand without quotation marks"),
     ("param-value", "NUMBER", "\" NAME NUMBER", "a unit stands behind a colon, as in param k = 2 : m/s; constants stand with ',' between them, as in param k = 2, m = 3"),
+    ("param-value", "", "=", "a constant has one value, as in param k = 2"),
     ("state", "", "(1 (2 (3 (4 (5 (0 .. ...", "a vector is declared by its range, as in state x[1..3]; its ends are whole numbers"),
     ("state param-names angle", "NUMBER", ":", "a vector is declared by its range, as in {entry} x[1..3]"),
     ("state angle", "", "(", "a state is named alone, without (t)"),
@@ -85,6 +86,7 @@ const ADVICE: &[(&str, &str, &str, &str)] = &[
     ("output", "", ";", "outputs stand with ',' between them, as in output x, y"),
     ("output", "NUMBER", "=", "an equation that holds at all times has zero on the left, as in output 0 = x - 1"),
     ("output", "NAME", "=", "an output is an expression: name it by a definition, let {name} = ..., and write output {name}"),
+    ("output", "", "=", "an output is an expression: name it by a definition, as in let y = x^2, and write output y"),
     ("output", "", "as", "an output is an expression: name it by a definition, as in let y = x^2, and write output y"),
     ("output", "", "[", "a dimension stands behind a colon, as in output x : rad"),
     ("output", "", "@ every at", "when it is measured stands in a scene, as in rate = 10"),
@@ -145,6 +147,7 @@ const ADVICE: &[(&str, &str, &str, &str)] = &[
     ("erratum damaged scan convention loose", "", "follows", "'follows' stands behind the name, as in {entry} 2 follows 1 at \"page 57\": ..."),
     ("erratum-statement damaged-statement scan-statement convention-statement loose-statement", "\"", "\"", "the remark stands before 'conclusion', as in ... \"remark\" conclusion \"none\""),
     // statements
+    ("statement", "corrected repaired meant as", "\"", "here stands a statement without quotation marks, as in x = y"),
     ("statement", "at", "", "the value at a point is written x at {x = 1, y = 2}; a condition of a claim with 'where', as in '... where omega = 0'"),
     ("claim-statement", "NOTHING", ":", "one colon stands behind the name of a claim"),
     ("statement", "BRACE", ": ;", "the value at a point is written x at {x = 1, y = 2}"),
@@ -376,8 +379,10 @@ impl<'t> Place<'t> {
 
     /// How the entry is written.
     fn form(&self, what: &str) -> Option<String> {
-        // a statement that goes wrong in the middle of an expression is no question of its form
-        if self.is_part("claim-statement") && !self.has_at("END") && !what.starts_with(['\'', ':']) {
+        // where an expression goes wrong in its middle, the form of the entry is no question
+        let is_of_form =
+            |what: &str| ["'", ":", "the words", "a text"].into_iter().any(|begin| what.starts_with(begin));
+        if self.has_expressions() && !self.has_at("END") && !is_of_form(what) {
             return None;
         }
         let of_this = |(parts, _): &&(&str, &str)| parts.split(' ').any(|part| self.is_part(part));

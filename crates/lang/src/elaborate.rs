@@ -87,11 +87,12 @@ impl System {
                 total.ok_or_else(|| Problem::new(Code::Syntax, &expr.span, "an empty product", "here"))
             }
             ExprKind::Power(base, exponent) => {
-                let value = match self.elaborate(base)? {
-                    Value::Matrix(_) => {
+                let value = self.elaborate(base)?;
+                let value = match (value.as_number(), value) {
+                    (Some(number), _) => number,
+                    (None, Value::Matrix(_)) => {
                         let message = "a matrix has no powers";
-                        let problem = Problem::new(Code::Value, &expr.span, message, "this power");
-                        return Err(problem.help(
+                        return Err(Problem::new(Code::Value, &expr.span, message, "this power").help(
                             "an inverse is written inverse(M), a product M*M, a transpose transpose(M)",
                         ));
                     }
