@@ -20,6 +20,7 @@ mod language;
 mod lie_derivatives;
 mod misprints;
 mod mistakes;
+mod mistakes_of_entries;
 mod mutated_verdicts;
 mod mutation;
 mod nonrational;

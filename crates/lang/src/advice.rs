@@ -67,7 +67,7 @@ const ADVICE: &[(&str, &str, &str, &str)] = &[
     ("drift-name input-name field-name", "", "{", "a field has no brackets: leave '{' and '}' out"),
     ("drift-name input-name field-name", "NAME", "= ( + , - *", "a field has a rate for each state below its name, as in {entry} {name}  x' = ..."),
     ("rates", "'", "=", "a rate stands alone on the left, as in {name}' = ..."),
-    ("rates", "", "'", "a rate stands alone on the left, as in {name}' = ..."),
+    ("rates", "NAME", "'", "a rate stands alone on the left, as in {name}' = ..."),
     ("rates let", "OPEN", ",", "brackets hold one expression: a matrix is written [a; b], and there is no 'if'"),
     ("rates", "", ",", "rates stand one below the other, without ','"),
     ("drift-name input-name field-name", "NAME", "for", "a line for each index ends with 'for', as in x[i]' = v for i in 1..3"),
@@ -148,7 +148,7 @@ const ADVICE: &[(&str, &str, &str, &str)] = &[
     ("erratum-statement damaged-statement scan-statement convention-statement loose-statement", "\"", "\"", "the remark stands before 'conclusion', as in ... \"remark\" conclusion \"none\""),
     // statements
     ("statement", "corrected repaired meant as", "\"", "here stands a statement without quotation marks, as in x = y"),
-    ("statement", "at", "", "the value at a point is written x at {x = 1, y = 2}; a condition of a claim with 'where', as in '... where omega = 0'"),
+    ("statement", "at", "", "the value at a point is written x at {x = 1, y = 2}; a condition of a claim is written with 'where', as in '... where omega = 0'"),
     ("claim-statement", "NOTHING", ":", "one colon stands behind the name of a claim"),
     ("statement", "BRACE", ": ;", "the value at a point is written x at {x = 1, y = 2}"),
     ("statement", "", "|{", "the value at a point is written x at {x = 1, y = 2}"),

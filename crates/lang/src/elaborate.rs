@@ -272,8 +272,9 @@ impl System {
             self.symbols.iter().filter(|(_, info)| wanted != Wanted::State || info.kind == Kind::State);
         let symbols = symbols.map(|(symbol, _)| self.symbol_name(*symbol));
         let definitions = self.definitions.keys().map(String::as_str).chain(["pi", "rank", "infinity"]);
+        let written = self.fields.iter().filter(|field| !self.is_made(field));
         let fields: Vec<&str> =
-            self.fields.iter().chain(&self.imported_fields).map(|field| field.name.as_str()).collect();
+            written.chain(&self.imported_fields).map(|field| field.name.as_str()).collect();
         let near = match wanted {
             Wanted::Field => nearest(name, fields.iter().copied()),
             Wanted::State => nearest(name, symbols.chain(["others"])),

@@ -51,7 +51,7 @@ pub(super) const ENTRIES: [&str; 30] = [
 #[rustfmt::skip]
 const OTHER_ENTRIES: [(&str, &str); 26] = [
     ("const constant constants parameter parameters params", "it is called 'param', as in param k = 2"),
-    ("variable variables var vars syms symbols symbolic sym Real real float double states unknowns", "it is called 'state', as in state x, y"),
+    ("variable variables var vars syms symbols symbolic sym Real real float double unknowns", "it is called 'state', as in state x, y"),
     ("dynamics ode odes equation equations rates system_dynamics", "it is called 'drift', as in drift f, and a rate for each state below it"),
     ("vector vectorfield", "it is called 'field', as in field g, and a rate for each state below it"),
     ("def define function", "it is called 'let', as in let e = x^2: a definition is one expression, and no function"),
