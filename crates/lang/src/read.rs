@@ -257,7 +257,6 @@ impl System {
                     let (value, domain) = self.apart(|system| system.scalar(expr))?;
                     let guards = self.guards_of(&domain);
                     self.refuse_without_value(&guards, &expr.span)?;
-                    self.refuse_what_measures_nothing(value, &expr.span)?;
                     let text = match (&expr.kind, is_repeated) {
                         (_, false) => in_one_line(&self.source, &expr.span),
                         (ExprKind::Name(name), true) => name.clone(),
@@ -298,29 +297,6 @@ impl System {
             Item::View(view) => self.enter_view(view)?,
         }
         Ok(())
-    }
-
-    /// Refuses an output that is made of numbers and known constants alone: whatever the state is, it is the same.
-    fn refuse_what_measures_nothing(&self, value: NodeId, span: &Span) -> Result<(), Problem> {
-        let symbols = self.graph.symbols_of([value]);
-        let is_constant = |symbol: &Symbol| {
-            let kind = self.symbol_info(*symbol).map(|info| info.kind);
-            kind == Some(Kind::Parameter) && !self.states.contains(symbol)
-        };
-        if !symbols.iter().all(is_constant) {
-            return Ok(());
-        }
-        let message = "this output is the same in all states, and measures nothing";
-        let problem = Problem::new(Code::Value, span, message, "no state stands in it");
-        Err(match symbols.iter().next() {
-            Some(symbol) => {
-                let name = self.symbol_name(*symbol);
-                problem.help(format!("name a state, as in output x; a constant that is to be found is declared as 'param {name} unknown'"))
-            }
-            None => problem.help(
-                "name a state, as in output x; an equation that holds at all times is written output 0 = e",
-            ),
-        })
     }
 
     /// Adds an output. What is seen twice is seen once: a second time it would count as a measurement of its own.
