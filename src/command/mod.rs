@@ -286,7 +286,8 @@ impl Verb {
             Verb::Recheck(verb) => one(&verb.file, Kind::Json),
             Verb::Observe(verb) => scene_with_data(&verb.scene, verb.data.as_deref()),
             Verb::Plan(verb) => scene_with_data(&verb.scene, verb.data.as_deref()),
-            Verb::Advise(verb) if verb.identify.is_empty() => one(&verb.file, Kind::Scene),
+            // without --identify it takes scenes, and says itself what a proof file needs
+            Verb::Advise(verb) if verb.identify.is_empty() => Vec::new(),
             Verb::Advise(verb) => one(&verb.file, Kind::Proof),
             Verb::Poses(verb) => verb.scene.iter().map(|scene| Given::one(scene, Kind::Scene)).collect(),
             Verb::Import(verb) => one(&verb.file, Kind::Model),

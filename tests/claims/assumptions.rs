@@ -36,7 +36,10 @@ fn claims_hold_under_what_is_assumed() {
 /// Of no state nothing is proved: assumptions that contradict one another, or a claim's own condition.
 #[test]
 fn assumptions_that_cannot_hold_prove_nothing() {
-    for text in ["assume m > 0, m < 0\nclaim a: k = 1\n", "assume m > 0\nclaim a: k = 1 where m < 0\n"] {
+    let none =
+        System::parse("s.proof", &format!("{HEAD}assume m > 0, m < 0\nclaim a: k = 1\n"), Path::new(""));
+    assert!(none.expect_err("no value of m").message.contains("no value of 'm' meets all"));
+    for text in ["assume m > k, k > m\nclaim a: k = 1\n", "assume m > 0\nclaim a: k = 1 where m < 0\n"] {
         let found = words(&format!("{HEAD}{text}"));
         assert_ne!(found[0].1, "proved", "{text}");
     }

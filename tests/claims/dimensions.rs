@@ -305,7 +305,7 @@ fn what_is_no_dimension_is_refused() {
         ("m^x", "x", "an exponent", ""),
         ("m^(1/0)", "(", "not divided by zero", ""),
         ("m^1000", "1000", "at most 100", ""),
-        ("(m*s", "output", "')'", ""),
+        ("(m*s", "\noutput", "')'", ""),
         ("m*", "output", "'output' is none", ""),
         ("", "output", "'output' is none", ""),
         ("[m]", "[", "a dimension, as in", "for instance"),

@@ -148,7 +148,7 @@ fn nothing_is_overwritten_in_silence() {
         ("system \"s\" state x\nlet x = 2", "'x' has a meaning already", (2, 5)),
         ("system \"s\" let x = 2\nparam x", "'x' has a meaning already", (2, 7)),
         ("system \"s\" state x, y,\n  x", "'x' has a meaning already", (2, 3)),
-        ("system \"s\" state\n others", "'others' has a meaning already", (2, 2)),
+        ("system \"s\" state\n others", "'others' is a word of the language", (2, 2)),
         ("system \"s\" param\n pi", "'pi' has a meaning already", (2, 2)),
         ("system \"s\" use a = \"a.proof\"\nlet k = 3", "'k' is a symbol of an imported system", (2, 5)),
         ("system \"s\" let k = 3\nuse a = \"a.proof\"", "'k' is a definition above, and a symbol of", (2, 1)),

@@ -436,7 +436,7 @@ fn what_cannot_be_asked_is_refused_with_advice() {
         (vec!["--map", "omega0"], "two coordinates"),
         (vec!["--map", "omega0,r1"], "depend on omega0, phi1"),
         (vec!["--map", "omega0,bracket"], "no state or parameter"),
-        (vec!["--box", "omega0=2..2"], "pole"),
+        (vec!["--box", "omega0=2..2"], "undefined at every state"),
     ] {
         let output = palmistry(&[&["certify", SAME_RATE], arguments.as_slice()].concat());
         let words = String::from_utf8_lossy(&output.stderr).replace('│', " ");

@@ -187,7 +187,7 @@ fn the_command_tells_each_unknown() {
     // with every other question: its answer, and these numbers beside it
     let both = json(&palmistry(&["rank", file, "--global", "--at", "x=1", "--samples", "5", "--json"]));
     assert_eq!((&both["samples"], &both["global"]["unknowns"]), (&5.into(), &found["unknowns"]));
-    for others in [&["--accessible", "--samples", "5"] as &[&str], &["--where-it-drops"], &["--digits", "5"]]
+    for others in [&["--order", "2", "--samples", "5"] as &[&str], &["--where", "k > 0"], &["--digits", "5"]]
     {
         let alone = json(&palmistry(&[&["rank", file, "--json", "--no-times"], others].concat()));
         let both = palmistry(&[&["rank", file, "--json", "--no-times", "--functions"], others].concat());

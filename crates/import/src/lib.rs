@@ -11,6 +11,7 @@
 mod cases;
 mod elsewhere;
 mod expression;
+mod file_functions;
 mod formulas;
 mod functions;
 mod julia;

@@ -6,7 +6,7 @@ use super::least::{self, ConstantColumns};
 use super::scene::hints::near;
 use super::scene::{Guess, Scene, SceneError};
 use super::simulation::{Simulation, body, constants};
-use super::system_motion::SystemMotion;
+use super::system_motion::{SystemMotion, known_signals};
 use super::unguided::Unguided;
 use palmistry_lang::{Kind, System};
 use palmistry_math::expression::{NodeId, Symbol};
@@ -100,13 +100,6 @@ impl Groundwork {
         }
         rules
     }
-}
-
-/// The signals that somebody knows, with their derivatives.
-pub(super) fn known_signals(system: &System) -> Vec<Symbol> {
-    let known = system.known_signals();
-    let chains = system.signal_chains().into_iter();
-    chains.filter(|chain| chain.first().is_some_and(|first| known.contains(first))).flatten().collect()
 }
 
 /// Checks that everything estimated is a state of the system, before measurements or a first guess are asked for.

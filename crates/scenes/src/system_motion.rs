@@ -3,11 +3,11 @@
 //! Observers that know the same equations are tested on it: their estimates are compared with the true state of the motion. It is no
 //! independent check of the equations, as a body between palms is.
 
-use super::groundwork::known_signals;
 use super::scene::hints;
 use super::scene::{Channel, Scene, SceneError, Sensor, SimulatedSystem};
 use super::simulation::{FIRST_SAMPLES, read_with_errors};
 use palmistry_lang::{Kind, System};
+use palmistry_math::expression::Symbol;
 use palmistry_observe::{Lost, ModelError, Record, RecordError, Response, ResponseError, ResponseQuestion};
 use std::collections::BTreeMap;
 
@@ -170,4 +170,11 @@ impl SystemMotion {
         read_with_errors(&response.times, &mut columns, &is_output, sensor, channels, seed);
         Record::new(response.times.clone(), columns)
     }
+}
+
+/// The signals that somebody knows, with their derivatives.
+pub(super) fn known_signals(system: &System) -> Vec<Symbol> {
+    let known = system.known_signals();
+    let chains = system.signal_chains().into_iter();
+    chains.filter(|chain| chain.first().is_some_and(|first| known.contains(first))).flatten().collect()
 }

@@ -6,7 +6,8 @@ use super::forms::{matrix, transposed};
 use super::meaning::{keeps_the_value, named_function};
 use super::syntax::{Syntax, SyntaxKind};
 use super::tokens::Dialect;
-use super::workspace::{Form, MOST_ENTRIES, ScriptValue, ScriptWorkspace};
+use super::values::{Form, MOST_ENTRIES, ScriptValue};
+use super::workspace::ScriptWorkspace;
 use palmistry_lang::{Code, Problem};
 
 type Valued = Result<ScriptValue, Problem>;

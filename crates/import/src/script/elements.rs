@@ -2,7 +2,8 @@
 
 use super::super::expression::{ForeignExpr, ForeignKind};
 use super::syntax::Syntax;
-use super::workspace::{Form, MOST_ENTRIES, ScriptValue, ScriptWorkspace};
+use super::values::{Form, MOST_ENTRIES, ScriptValue};
+use super::workspace::ScriptWorkspace;
 use palmistry_lang::{Code, Problem};
 
 impl ScriptWorkspace<'_> {

@@ -1,7 +1,7 @@
 //! Matrices, lists and arrays: how a language joins and multiplies them.
 
 use super::super::expression::{ForeignExpr, ForeignKind, Span};
-use super::workspace::{Form, MOST_ENTRIES, ScriptValue};
+use super::values::{Form, MOST_ENTRIES, ScriptValue};
 use palmistry_lang::{Code, Problem};
 
 type Valued = Result<ScriptValue, Problem>;

@@ -8,10 +8,12 @@ mod meaning;
 mod parser;
 mod syntax;
 mod tokens;
+mod values;
 mod workspace;
 
 pub(super) use meaning::{MOST_CASES, meaning, named_function};
 pub(super) use parser::Parser;
 pub(super) use syntax::{Syntax, SyntaxKind};
 pub(super) use tokens::{Dialect, Token, TokenKind, tokens};
-pub(super) use workspace::{Form, ScriptValue, ScriptWorkspace};
+pub(super) use values::{Form, ScriptValue};
+pub(super) use workspace::ScriptWorkspace;

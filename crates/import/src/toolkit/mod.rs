@@ -5,8 +5,8 @@ mod declared;
 mod systems;
 
 use super::expression::{ForeignExpr, Span};
+use super::file_functions::FileFunctions;
 use super::functions::constant;
-use super::julia::FileFunctions;
 use super::model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate};
 use super::print::same;
 use super::script::{Syntax, SyntaxKind, Token, meaning};

@@ -10,7 +10,7 @@ fn every_value_is_checked_and_its_place_marked() {
         ("window = 60", "windw = 60", "unknown key 'windw'", "windw", "perhaps you meant 'window'"),
         ("mass = 1.0", "masse = 1.0", "unknown key 'masse'", "masse", "'mass'"),
         ("mean = 1.0", "meen = 1.0", "unknown key 'meen'", "meen", "'mean'"),
-        ("phase = 0.2", "fase = 0.2", "unknown key 'fase'", "fase", "'phase'"),
+        ("phase = 0.2", "fase = 0.2", "unknown key 'fase'", "fase", "phase"),
         ("[sensor]", "[sensors]", "unknown key 'sensors'", "sensors", "'sensor'"),
         ("prior = 0.2", "priors = 0.2", "unknown key 'priors'", "priors", "'prior'"),
         ("\"newton\"", "\"newtons\"", "'newtons' is not known", "\"newtons\"", "'newton'"),
