@@ -72,7 +72,7 @@ class OneMachine(unittest.TestCase):
                 missing(["rank", FILE, "--samples", "51"], 3, folder, PROGRAM)
 
     def test_what_the_program_says_is_said(self):
-        with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(Failed, "cannot read nowhere.proof"):
+        with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(Failed, "there is no file nowhere.proof"):
             missing(["rank", "nowhere.proof"], 3, folder, PROGRAM)
 
 

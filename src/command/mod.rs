@@ -275,7 +275,10 @@ impl Verb {
         match self {
             Verb::Verify(verb) => verb.path.iter().map(|path| Given::or_folder(path)).collect(),
             Verb::Prove(verb) => verb.claims.paths.iter().map(|path| Given::or_folder(path)).collect(),
-            Verb::Check(verb) => verb.paths.iter().map(|path| Given::or_folder(path)).collect(),
+            // one that is not there costs the others nothing
+            Verb::Check(verb) => {
+                verb.paths.iter().filter(|path| path.exists()).map(|path| Given::or_folder(path)).collect()
+            }
             Verb::Fmt(verb) => verb.paths.iter().map(|path| Given::or_folder(path)).collect(),
             Verb::Rank(verb) => one(&verb.file, Kind::Proof),
             Verb::Reduce(verb) => one(&verb.file, Kind::Proof),

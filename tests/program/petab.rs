@@ -132,6 +132,11 @@ fn a_foreign_simulation_is_one_of_the_model() {
             &format!("{}\tcondition1\t{}\t{}\t1e-6\n", row["observableId"], row["simulation"], row["time"]);
     }
     write(&folder, &format!("measurementData_{name}.tsv"), text);
+    // the errors are stated, and a parameter that nothing names is refused
+    let parameters = format!("parameters_{name}.tsv");
+    let text = std::fs::read_to_string(folder.path().join(&parameters)).unwrap();
+    let named: Vec<&str> = text.lines().filter(|line| !line.starts_with("sd_")).collect();
+    write(&folder, &parameters, named.join("\n") + "\n");
     let (found, _) = observed(&folder.path().join(format!("{name}.yaml")), "starts = 10\n");
     let rows = found["best"]["measurements"].as_array().unwrap();
     for row in rows {

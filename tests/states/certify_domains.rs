@@ -218,7 +218,7 @@ fn of_what_exists_nowhere_nothing_is_proved() {
             RegionRows::Own,
             None,
         ),
-        ("state x drift f x' = 0 output x + 0*sqrt(-1 - x^2)\nsample x in [-1, 1]", ALL, None),
+        ("state x drift f x' = 0 output x + 0/((x + 1)^2 - x^2 - 2*x - 1)\nsample x in [-1, 1]", ALL, None),
         // a parameter that is held at a pole, and a state
         ("state x param k = 0 drift f x' = 0 output x + 0/k\nsample x in [-1, 1]", ALL, None),
         ("state x param k = 1 drift f x' = 0 output x*k/k\nsample x in [-1, 1]", ALL, Some(("k", 0))),

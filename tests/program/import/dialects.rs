@@ -158,14 +158,14 @@ const LANGUAGES: [Language; 5] = [
     },
     Language {
         file: "sympy.txt",
-        whole: |f, g| format!("states: x, y\noutputs: x*a*b\nMatrix([[{f}], [{g}]])\n"),
+        whole: |f, g| format!("states: x, y\nparameters: a, b\noutputs: x*a*b\nMatrix([[{f}], [{g}]])\n"),
         name: of_time,
         power: "**",
         from_the_left: false,
     },
     Language {
         file: "lines.txt",
-        whole: |f, g| format!("outputs: x*a*b\ndx/dt = {f}\ny' = {g}\n"),
+        whole: |f, g| format!("parameters: a, b\noutputs: x*a*b\ndx/dt = {f}\ny' = {g}\n"),
         name: str::to_owned,
         power: "^",
         from_the_left: false,
@@ -340,7 +340,7 @@ fn loops_and_elements_of_scripts() {
     let chain = plain("-d*x1 + k; -d*x2 + k*x1; -d*x3 + k*x2");
     for lines in [
         "f(1) = -d*x1 + k;\nf(2) = -d*x2 + k*x1;\nf(3) = -d*x3 + k*x2;\n",
-        "f(3) = -d*x3 + k*x2; f(1,1) = -d*x1 + k; f(2,1) = -d*x2 + k*x1;",
+        "f(3,1) = -d*x3 + k*x2; f(1,1) = -d*x1 + k; f(2,1) = -d*x2 + k*x1;",
         "n = length(x); f = sym(zeros(n, 1));\nfor i = 1:n\n  f(i) = -d*x(i);\nend\nf(1) = f(1) + k;\nfor i = 2:n, f(i) = f(i) + k*x(i-1); end\n",
         "f = zeros(size(x, 1), 1);\nfor (i = numel(x):-1:1)\n  for j = [1]\n    f(i) = f(i) - d*x(i*j);\n  end\nend\nfor i = 1:0\n  f(1) = nonsense(x(end));\n for k = 1:3\n end\nend\nf(1) = f(1) + k; f(2) = f(2) + k*x1; f(3) = f(3) + k*x2;\n",
         "f = [0; 0; 0]; for i = [3 1 2]; f(i) = -d*x(i); end; f = f + [k; k*x1; k*x2];",

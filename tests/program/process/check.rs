@@ -34,7 +34,7 @@ fn every_mistake_is_told_once_and_at_its_line() {
         (
             "system \"s\"\nstate x\ndrift f\n  x' = -x\nlet a = (x + 1\nlet b = x + nobody\noutput x\n\
              claim 1: b = [x]\nclaim 2: [x, x] = [x; x]\nclaim 2: x = x\nclaim 3: x = \n",
-            &[6, 6, 9, 10, 11][..],
+            &[5, 6, 9, 10, 11][..],
         ),
         // several unknown names in one expression
         ("system \"s\"\nstate x\nclaim 1: one + x = two*sin(three)\n", &[3, 3, 3]),
@@ -55,11 +55,11 @@ fn every_mistake_is_told_once_and_at_its_line() {
             &[3, 5],
         ),
         // entries that are indented as a whole
-        ("  system \"s\"\n  state x\n  let a = (x\n  let b = c\n", &[4, 4]),
+        ("  system \"s\"\n  state x\n  let a = (x\n  let b = c\n", &[3, 4]),
         // references
         ("system \"s\"\nstate x\nclaim 1 restates 7: x = x\nclaim 2 restates 8: x = x\n", &[3, 4]),
-        // what is missing is expected where something else begins, as `prove` has it
-        ("system \"s\"\nstate x\nclaim 1: x = +\nclaim 2 restates 1: x = x\n", &[4]),
+        // what is missing at the end of an entry is marked there
+        ("system \"s\"\nstate x\nclaim 1: x = +\nclaim 2 restates 1: x = x\n", &[3]),
         // no title, and a title that cannot be read
         ("state x\nclaim 1: x = y\n", &[1, 2]),
         ("system s\nstate x\nclaim 1: x = y\n", &[1, 3]),
