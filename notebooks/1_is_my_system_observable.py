@@ -129,7 +129,7 @@ assert np.abs(same).max() < 1e-12
 
 # %%
 claimed = System.parse(ROBOT.replace("OUTPUTS", "q1") + """
-claim unobservable: [d(q1); d(L(drive, q1)); d(L(turn, drive, q1))]*[-y; x; 1] = [0; 0; 0]
+claim unseen: [d(q1); d(L(drive, q1)); d(L(turn, drive, q1))]*[-y; x; 1] = [0; 0; 0]
 """)
 [claim] = claimed.prove()
 assert claim.verdict == "proved"
