@@ -41,7 +41,7 @@ const MISTAKES: [Mistake; 17] = [
     ("samples = 401", "rate = 1e15", "at 1000000000000000 Hz", "samples", "rate = 1e15"),
     ("samples = 401", "samples = -1", "a whole number that is not negative", "", "samples = "),
     ("window = 80", "window = 402", "'window' cannot be 402", "from 2 to 401", "window = "),
-    ("general.proof", "generel.proof", "there is no file", "the folder in which the scene lies", "model = "),
+    ("general.proof", "generel.proof", "there is no file", "general.proof", "model = "),
 ];
 
 #[test]
