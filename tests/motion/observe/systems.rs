@@ -224,7 +224,7 @@ const MISTAKES: [(&str, &str, &str, &str); 8] = [
     ("u = \"0.2 + 0.1*sin(0.5*t)\"", "u = \"0.2 + \"", "u = 0.2 + :", "u = "),
     ("u = \"0.2 + 0.1*sin(0.5*t)\"", "u = \"h1\"", "depends on 'h1'", "u = "),
     ("u = \"0.2 + 0.1*sin(0.5*t)\"", "h1 = \"t\"", "has a value and a function of time", "h1 = \"t\""),
-    ("u = \"0.2 + 0.1*sin(0.5*t)\"", "", "nothing says what drives 'u'", "[inputs]"),
+    ("u = \"0.2 + 0.1*sin(0.5*t)\"", "", "nothing says what drives 'u'", "[start]"),
     ("duration = 40\n", "", "without 'duration'", "samples"),
 ];
 
