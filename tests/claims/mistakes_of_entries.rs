@@ -419,15 +419,20 @@ fn mistakes_with_another_meaning_are_refused() {
         let said = format!("{} {}", error.message, error.help.unwrap_or_default());
         assert!(said.contains(message), "{entry}: {said}");
     }
-    for rate in ["1/0", "phi/0", "0/0", "sqrt(-1)", "log(0)*phi", "asin(2)"] {
+    for rate in ["1/0", "phi/0", "phi/(2 - 2)", "sin(phi + 1/0)", "0/0", "sqrt(-1)", "log(0)*phi", "asin(2)"]
+    {
         let error =
             first_problem(&PENDULUM.replacen("-k*sin(phi)", rate, 1)).unwrap_or_else(|| panic!("{rate}"));
         assert!(error.message.contains("has a value in no state"), "{rate}: {}", error.message);
     }
+    // what is written with names exists nowhere, and the claims say so
+    let named = first_problem(&PENDULUM.replacen("-k*sin(phi)", "phi/(k - k)", 1));
+    assert!(named.is_none(), "{named:?}");
     // and what means what it says is read
     for entry in [
         "claim a: x = 2+-0.1",
         "let e = 1 + -2",
+        "let e = (3) at {phi = 0}",
         "assume k > 1, a > 0, a < 1",
         "output u",
         "let e = [2]^2",

@@ -248,6 +248,9 @@ fn mistakes_are_told() {
         ("claim a: rank = 5 at {x = 0}", "'at' belongs to the number before it"),
         ("claim a: solutions(k) = 5 at {x = 0}", "'at' belongs to the number before it"),
         ("claim a: x = 5 where x = 5 at {k = 0}", "'at' belongs to the number before it"),
+        ("let n = 5\nclaim a: rank = n at {x = 0}", "'at' belongs to the number"),
+        ("claim a: rank >= (1) at {x = 0}", "'at' belongs to the number"),
+        ("claim a: (1) at {x = 0} <= rank", "'at' belongs to the number"),
     ] {
         let text = format!("system \"T\"\nstate x\nparam k unknown\ndrift f x' = -k*x\noutput x\n{claim}\n");
         let error = read(&text).expect_err(claim);

@@ -50,7 +50,7 @@ pub(super) fn not_read(name: &str, text: &str) -> Option<Problem> {
     let begin: String = text.chars().take(100_000).collect();
     let by_words = || {
         let has_all = |words: &&[&str]| words.iter().all(|word| begin.contains(word));
-        FORMATS.iter().find(|(_, _, lists, _)| lists.iter().any(|words| has_all(&words)))
+        FORMATS.iter().find(|(_, _, lists, _)| lists.iter().any(&has_all))
     };
     let (what, _, _, help) = by_name.or_else(by_words)?;
     let message = format!("this looks like {what}, which is not imported");

@@ -7,7 +7,7 @@ use super::problems::Cause;
 use super::syntax::{ClaimSyntax, Statement};
 use dashu::rational::RBig;
 use palmistry_math::expression::NodeId;
-use palmistry_math::expression::syntax::Relation;
+use palmistry_math::expression::syntax::{Expr, ExprKind, Relation};
 
 impl System {
     /// Whether a statement of a claim can be understood: its names are known and its two sides can be equal at all.
@@ -78,6 +78,14 @@ impl System {
             }
         }
         if of_a_rank || of_solutions {
+            let is_taken_at = |side: &Expr, value: &Value| {
+                matches!(side.kind, ExprKind::At(..)) && value.as_number().is_some()
+            };
+            if is_taken_at(left, &values.0) || is_taken_at(right, &values.1) {
+                let message = "'at' belongs to the number, which has the same value everywhere";
+                return Err(Problem::new(Code::Statement, &statement.equation.span, message, "this claim")
+                    .help("the states of a claim stand behind 'where', as in rank = 3 where x = 0"));
+            }
             self.refuse_negative(&values, statement)?;
         }
         if of_solutions && !statement.further.is_empty() {
@@ -201,7 +209,7 @@ impl System {
                 continue;
             }
             let span = &statement.equation.span;
-            return Err(match symbols.iter().next() {
+            return Err(match symbols.first() {
                 Some(symbol) => {
                     let name = self.symbol_name(*symbol);
                     let message =

@@ -6,7 +6,8 @@
 use super::codes::Code;
 use super::error::Problem;
 use super::model::{Assignment, System, Value};
-use palmistry_math::expression::syntax::{Expr, Span};
+use dashu::rational::RBig;
+use palmistry_math::expression::syntax::{Expr, ExprKind};
 use palmistry_math::expression::{Guard, Need, NodeId, Symbol, add_guard, substitute_guards};
 use std::collections::{BTreeSet, HashSet};
 
@@ -91,21 +92,32 @@ impl System {
         self.definition_domains.get(name).map(|domain| self.guards_of(domain)).unwrap_or_default()
     }
 
-    /// Refuses a rate or an output that has no value in any state, as it divides by zero or takes the root of a negative number.
-    pub(super) fn refuse_without_value(&self, guards: &[Guard], span: &Span) -> Result<(), Problem> {
-        let Some(unmet) = guards.iter().find(|guard| guard.constant(&self.graph) == Some(false)) else {
-            return Ok(());
-        };
-        let number = self.graph.text(unmet.node);
-        let why = match unmet.need {
-            Need::NotZero => "it divides by zero".to_owned(),
-            Need::Positive => format!("it takes the logarithm of {number}"),
-            Need::NotNegative => format!("it takes the root of {number}"),
-            Need::WithinOne | Need::InsideOne => format!("it takes the inverse sine or cosine of {number}"),
-        };
-        let message = format!("this has a value in no state: {why}");
-        Err(Problem::new(Code::Value, span, message, "this")
-            .help("write what it is to be: all numbers are real and finite"))
+    /// Refuses a rate or an output that has no value in any state, as it divides by the number zero or takes the root of a
+    /// negative one. What is written with names, as `1/(x - x)`, is left to the claims: it exists nowhere, and they say so.
+    pub(super) fn refuse_without_value(&mut self, expr: &Expr) -> Result<(), Problem> {
+        let mut numbers = Vec::new();
+        if !numbers_in(expr, &mut numbers) {
+            numbers.push(expr.clone());
+        }
+        for number in numbers {
+            let (_, guards) = self.elaborate_guarded(&number)?;
+            let Some(unmet) = guards.iter().find(|guard| guard.constant(&self.graph) == Some(false)) else {
+                continue;
+            };
+            let value = self.graph.text(unmet.node);
+            let why = match unmet.need {
+                Need::NotZero => "it divides by zero".to_owned(),
+                Need::Positive => format!("it takes the logarithm of {value}"),
+                Need::NotNegative => format!("it takes the root of {value}"),
+                Need::WithinOne | Need::InsideOne => {
+                    format!("it takes the inverse sine or cosine of {value}")
+                }
+            };
+            let message = format!("this has a value in no state: {why}");
+            return Err(Problem::new(Code::Value, &expr.span, message, "this")
+                .help("write what it is to be: all numbers are real and finite"));
+        }
+        Ok(())
     }
 
     /// Guards with symbols replaced.
@@ -134,4 +146,43 @@ impl System {
             .flat_map(|(_, guards)| guards.iter().copied())
             .collect()
     }
+}
+
+/// Whether an expression has names. The largest parts of it that have none are put into `numbers`, but for the expression
+/// itself and for numbers as they are written; those of a product are one part, so that `x/0` has `1/0`.
+fn numbers_in(expr: &Expr, numbers: &mut Vec<Expr>) -> bool {
+    let mut nameless = Vec::new();
+    let mut has_names = false;
+    let mut part = |divides: bool, part: &Expr, numbers: &mut Vec<Expr>| match numbers_in(part, numbers) {
+        true => has_names = true,
+        false => nameless.push((divides, part.clone())),
+    };
+    match &expr.kind {
+        ExprKind::Number(_) => {}
+        ExprKind::Name(_) | ExprKind::Indexed(_) => return true,
+        ExprKind::Call(_, parts) => parts.iter().for_each(|one| part(false, one, numbers)),
+        ExprKind::Sum(parts) | ExprKind::Product(parts) => {
+            parts.iter().for_each(|(divides, one)| part(*divides, one, numbers));
+        }
+        ExprKind::Power(base, _) => part(false, base, numbers),
+        ExprKind::RealPower(base, exponent) => {
+            part(false, base, numbers);
+            part(false, exponent, numbers);
+        }
+        ExprKind::Matrix(rows) => rows.iter().flatten().for_each(|one| part(false, one, numbers)),
+        // what is taken at a point may have another value there
+        ExprKind::At(..) => return true,
+    }
+    if !has_names {
+        return false;
+    }
+    if let ExprKind::Product(_) = &expr.kind {
+        let one = Expr { kind: ExprKind::Number(RBig::ONE), span: expr.span.clone() };
+        nameless.insert(0, (false, one));
+        numbers.push(Expr { kind: ExprKind::Product(nameless), span: expr.span.clone() });
+    } else {
+        let is_written = |one: &Expr| matches!(one.kind, ExprKind::Number(_));
+        numbers.extend(nameless.into_iter().map(|(_, one)| one).filter(|one| !is_written(one)));
+    }
+    true
 }

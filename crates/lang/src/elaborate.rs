@@ -106,11 +106,6 @@ impl System {
             ExprKind::RealPower(base, exponent) => self.real_power(base, exponent, &expr.span),
             ExprKind::Matrix(rows) => self.blocks(rows, &expr.span),
             ExprKind::At(inner, list) => {
-                if inner.is_literal() {
-                    let message = "'at' belongs to the number before it, which has the same value everywhere";
-                    return Err(Problem::new(Code::Value, &expr.span, message, "only this is taken at the point")
-                        .help("a sum is taken at a point in brackets, as in (x + 3) at {x = 2}; the states of a claim stand behind 'where', as in rank = 3 where x = 0"));
-                }
                 let (value, domain) = self.apart(|system| system.elaborate(inner))?;
                 if matches!(
                     value,

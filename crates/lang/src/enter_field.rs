@@ -115,10 +115,9 @@ impl System {
                     .help("leave one of the two out"));
             }
             let (rate, domain) = self.apart(|system| system.scalar(expr))?;
-            let needed = self.guards_of(&domain);
-            self.refuse_without_value(&needed, &expr.span)?;
+            self.refuse_without_value(expr)?;
             rates.push((symbol, rate));
-            guards.push(needed);
+            guards.push(self.guards_of(&domain));
         }
         Ok((rates, guards))
     }

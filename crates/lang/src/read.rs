@@ -256,7 +256,7 @@ impl System {
                     }
                     let (value, domain) = self.apart(|system| system.scalar(expr))?;
                     let guards = self.guards_of(&domain);
-                    self.refuse_without_value(&guards, &expr.span)?;
+                    self.refuse_without_value(expr)?;
                     let text = match (&expr.kind, is_repeated) {
                         (_, false) => in_one_line(&self.source, &expr.span),
                         (ExprKind::Name(name), true) => name.clone(),

@@ -95,8 +95,18 @@ fn primary(input: &mut Text<'_>) -> Read<Expr> {
 
 /// A power, perhaps at a point: `x^2 at {x = 3}` is nine.
 fn factor(input: &mut Text<'_>) -> Read<Expr> {
+    let is_bracketed = input.starts_with('(');
     let mut value = power(input)?;
-    while opt(keyword("at")).parse_next(input)?.is_some() {
+    loop {
+        let at = input.current_token_start();
+        if opt(keyword("at")).parse_next(input)?.is_none() {
+            return Ok(value);
+        }
+        // `rank = 3 at {x = 0}` would say nothing of the rank at that point
+        if matches!(value.kind, ExprKind::Number(_)) && !is_bracketed {
+            let help = "'at' belongs to the number before it, which has the same value everywhere: a sum is taken at a point in brackets, as in (x + 3) at {x = 2}; the states of a claim stand behind 'where', as in rank = 3 where x = 0";
+            return stop(at, "an expression with names before 'at'", Some(help.to_owned()));
+        }
         let (list, end) = assignments(input)?;
         let span = value.span.start..end;
         value = Expr { kind: ExprKind::At(Box::new(value), list), span };
@@ -104,7 +114,6 @@ fn factor(input: &mut Text<'_>) -> Read<Expr> {
             return stop(input.current_token_start(), "fewer 'at' after one another", None);
         }
     }
-    Ok(value)
 }
 
 fn at_depth(value: &Expr) -> usize {
