@@ -86,6 +86,7 @@ const ADVICE: &[(&str, &str, &str, &str)] = &[
     ("output", "", ";", "outputs stand with ',' between them, as in output x, y"),
     ("output", "NUMBER", "=", "an equation that holds at all times has zero on the left, as in output 0 = x - 1"),
     ("output", "NAME", "=", "an output is an expression: name it by a definition, let {name} = ..., and write output {name}"),
+    ("output", "NAME", ":", "an output is an expression and has no name of its own: name it by a definition, let {name} = ..., and write output {name}"),
     ("output", "", "=", "an output is an expression: name it by a definition, as in let y = x^2, and write output y"),
     ("output", "", "as", "an output is an expression: name it by a definition, as in let y = x^2, and write output y"),
     ("output", "", "[", "a dimension stands behind a colon, as in output x : rad"),

@@ -5,10 +5,11 @@ use super::codes::Code;
 use super::domain::Domain;
 use super::error::Problem;
 use super::model::{Field, FieldPlace, Kind, Matrix, SymbolInfo, System, Value};
+use super::nearby::nearest_name;
 use super::problems::Problems;
 use super::source_text::{is_a_proof_file, load, no_proof_file, with_plain_line_ends};
 use palmistry_io::file;
-use palmistry_io::foreign::{name_of as whole_name, shown_path};
+use palmistry_io::foreign::{name_of as whole_name, shown, shown_path};
 use palmistry_math::expression::syntax::{Name, Span};
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeSet, HashMap};
@@ -46,8 +47,13 @@ impl System {
     ) -> Result<(), Problem> {
         let refuse = |message: String| Problem::new(Code::Import, span, message, "this file");
         reading.files.insert(path.to_owned());
-        let place =
-            file::identity(path).map_err(|e| refuse(format!("cannot read {}: {e}", shown_path(path))))?;
+        let place = file::identity(path).map_err(|e| {
+            let help = match nearest_name(path) {
+                Some(near) => format!("perhaps you meant \"{}\"", shown(&near)),
+                None => "a path begins at the folder of the file that imports, as in use other = \"lib/other.proof\"".to_owned(),
+            };
+            refuse(format!("cannot read {}: {e}", shown_path(path))).help(help)
+        })?;
         if let Some(begin) = reading.open.iter().position(|open| *open == place) {
             let round = reading.open[begin..].iter().chain([&place]);
             let names: Vec<String> = round.map(|file| name_of(file)).collect();

@@ -9,8 +9,15 @@ use std::path::Path;
 /// Of more files in a folder none is looked for.
 const MOST_FILES: usize = 2000;
 
-/// What may be meant by the name of a file that is not there: a file of the same folder.
+/// What may be meant by the name of a file that is not there: a file of the same folder, with the folder as it was given.
 pub fn nearest_file(path: &Path) -> Option<String> {
+    let near = nearest_name(path)?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    Some(folder.map_or_else(|| shown(&near).into_owned(), |folder| shown_path(&folder.join(&near))))
+}
+
+/// The same, its name alone.
+pub(super) fn nearest_name(path: &Path) -> Option<String> {
     let wanted = path.file_name()?.to_str()?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let files = files_in(folder.unwrap_or(Path::new("."))).ok().filter(|files| files.len() <= MOST_FILES)?;
@@ -29,8 +36,7 @@ pub fn nearest_file(path: &Path) -> Option<String> {
     let stems = stems.filter_map(|name| Path::new(name).file_stem()?.to_str());
     let slip = || nearest(stem, stems).and_then(|near| names().find(|name| *name == with_end(near, end)));
     let other_end = || names().find(|name| Path::new(name).file_stem().is_some_and(|own| own == stem));
-    let near = found.or_else(slip).or_else(other_end)?;
-    Some(folder.map_or_else(|| shown(near).into_owned(), |folder| shown_path(&folder.join(near))))
+    found.or_else(slip).or_else(other_end).map(str::to_owned)
 }
 
 /// A name with its end.

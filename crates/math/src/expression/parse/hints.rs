@@ -8,7 +8,7 @@ use crate::number::Function;
 pub(super) const PRIME: &str = "' after the state";
 
 /// How it is written here, by what stands before the place and at it.
-const AT_THE_PLACE: [(&str, &str, &str); 70] = [
+const AT_THE_PLACE: [(&str, &str, &str); 73] = [
     ("/", "*", COMMENT),
     ("(", "*", COMMENT),
     ("", "(*", COMMENT),
@@ -35,7 +35,10 @@ const AT_THE_PLACE: [(&str, &str, &str); 70] = [
     ("", "|", "an absolute value is written abs(x), as in abs(omega)"),
     ("", "\\", "write functions and Greek letters without the backslash, as in sin(phi)"),
     ("", "{", "brackets are ( and ); a matrix is written [a, b; c, d]"),
-    ("", "%", COMMENT),
+    ("", "%", "a comment begins with '#', a percentage is written as a fraction, as in 0.5, and there is no remainder of a division"),
+    ("", "!=", "unequal is said in a claim or a condition, as in claim a: x != 0"),
+    ("", "!", "there is no factorial: write the number itself, as in 6 for 3!"),
+    ("", "@", "'@' stands behind the name of a state alone, as in x@2, its value in the second experiment: leave '@' out"),
     ("", "//", COMMENT),
     ("", ";", "an entry ends with its line: leave ';' out"),
     ("", "$", "formulas stand without '$'"),
