@@ -227,7 +227,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=6)
     parser.add_argument("--only", help="rows whose name contains this")
     options = parser.parse_args()
-    print("| what is wrong | said, in so many runs | status not 0 | borne out and wrong |\n|---|---|---|---|")
+    print("| what is wrong | reported, with the number of runs | status not 0 | borne out and wrong |\n|---|---|---|---|")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for what, case in CASES.items():

@@ -606,12 +606,12 @@ class Observation(Answer):
 
     @property
     def track(self) -> Table | None:
-        """What was believed sample by sample: each state with its bound there, a standard deviation (NaN where there is none)."""
+        """The estimates sample by sample: each state with its bound there, a standard deviation (NaN where there is none)."""
         return self._table("track")
 
     @property
     def outline(self) -> Table | None:
-        """The outline of a body, a row a normal (rad): support radius, band, point; None where nothing was seen of it."""
+        """The outline of a body, a row a normal (rad): support radius, band, point; None where none was estimated."""
         return self._table("outline")
 
     @property
@@ -681,7 +681,7 @@ class Observation(Answer):
         return Page(page)
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws what was estimated over time, an axis a state with a band of two standard deviations, by matplotlib. axes: as many as are sought, made unless given and returned."""
+        """Draws what was estimated over time, an axis a state with a band of two standard deviations, by matplotlib. axes: as many as there are estimates, made unless given and returned."""
         from .errors import Error
 
         track, names = self.track, self._found.sought()

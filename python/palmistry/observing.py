@@ -114,7 +114,7 @@ def stream(scene: str | os.PathLike[str], pieces: Iterable[Any], *, times: bool 
     """Observers on measurements as they arrive: each window's answer as soon as it is there, and at the end an account of all; objects as `palmistry observe SCENE --data - --json` prints.
 
     pieces: texts or bytes of comma-separated values, the first line with the names of columns; or rows as dicts, of which the first says the names. times: whether `seconds` are given.
-    Memory is bounded by a window. A break ends the work.
+    Memory is bounded by a few windows. A break ends the work.
 
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     _ = pathlib.Path(folder, "decay.proof").write_text('system "s" state x drift f x\\' = -x output x sample x in [0, 2]')

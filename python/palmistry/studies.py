@@ -23,7 +23,7 @@ def advise(
 ) -> Motions:
     """Motions of two palms that touch all normals of a scene's body and hold it all the time; of a scene in space, runs that widen the hull of all contacts.
 
-    trials: how many courses are tried, 400 unless given; in space for each run, 32 unless given. angle1, angle2: the least and the greatest angle of palm 1 against the ground and of palm 2
+    trials: how many motions are tried, 400 unless given; in space for each run, 32 unless given. angle1, angle2: the least and the greatest angle of palm 1 against the ground and of palm 2
     against palm 1, in rad. rate: the greatest rate of either palm, 3 rad/s unless given; in space that at which the body is set turning, 0.5 unless given. runs: how many in space, 4 unless
     given. seed: in place of the scene's. More trials may find better ones; the same seed finds the same ones on any number of threads.
 
@@ -56,12 +56,12 @@ def poses(
     grid: int = 20,
     levels: int = 4,
 ) -> Poses:
-    """Where a body lies between two slow palms without friction, how its stable poses hang together, and how palms have to move to turn it or to touch all of it.
+    """The stable poses of a body between two slow palms without friction, how they are connected, and palm motions that turn the body or touch all of it.
 
     The body of a scene, or `shape`: 'spline:Q1,Q2,Q3', 'centripetal:Q1,Q2,Q3', 'ellipse:A,B', or 'harmonics:MEAN,P2,Q2,...' of the support function, in m, with its centre of mass at `centre`.
-    palms: the angles phi1 and phi2, in rad, at which all stable poses are listed. margin: how far palms keep from being parallel to each other or to the ground, in rad: of plans and
+    palms: the angles phi1 and phi2, in rad, at which all stable poses are listed. margin: how far palms keep from being parallel to each other or to the ground, in rad: for plans and
     certificates; margins: those at which components are reported. turn: plan from one orientation to another, in rad. pad: both contacts stay in this part of their palms, in m from where the
-    palms meet. tolerance: poses of plans have to stand it that either palm is off by this, in rad. grid: nodes along a side of the grid of palm angles. levels: how often the certificate halves its
+    palms meet. tolerance: poses of a plan stay stable if either palm is off by this angle, in rad. grid: nodes along a side of the grid of palm angles. levels: how often the certificate halves its
     squares, 0 to 7. Random bodies: `run("poses", bodies=10)`.
 
     >>> found = palmistry.poses(shape="ellipse:0.02,0.015", margins=[0.3], levels=1)

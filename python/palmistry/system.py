@@ -344,7 +344,7 @@ class System:
         """What to measure or to know besides, so that unknowns become identifiable: all minimal sets of additions, smallest first. `palmistry advise --identify`.
 
         identify: the unknowns; all of them where none is named. globally: one value for each, and not finitely many. by: what may be added, of 'outputs', 'known', 'initial', 'inputs',
-        'experiments'; all but 'initial' unless given. measure: expressions that can be measured; the states unless given. at_most: sets of no more additions are looked for.
+        'experiments'; all but 'initial' unless given. measure: expressions that can be measured; the states unless given. at_most: the largest number of additions in a set.
 
         >>> scaled = palmistry.System.parse('system "s" state x param k unknown, s unknown drift f x\\' = -k*x output s*x')
         >>> scaled.design("s").sets
@@ -415,7 +415,7 @@ class System:
         return found
 
     def trade(self, samples: int = 1000, *, seed: int = 1) -> Trade:
-        """Measures speed against accuracy: numbers, ways to a derivative and ways to a rank, each at the same sampled states and held against exact arithmetic there.
+        """Measures speed against accuracy: number types, methods of differentiation and of deciding a rank, each at the same sampled states and compared with exact arithmetic there.
 
         samples: how many states are drawn from the sample box, at most 20000. Times are of this machine.
 
@@ -427,10 +427,10 @@ class System:
         return _asked(Trade, lambda: _native.trade(self._native, samples, seed))
 
     def stress(self, rows: str = "own", *, states: int = 10, samples: int = 200, seed: int = 1) -> Stress:
-        """Takes numbers to the extremes: how near to a singular set, how large, and in which units a rank is misreported, beside the certified one.
+        """Tests number types at extreme states: how near to a singular set, at which scales, and in which units a rank is reported wrongly, beside the certified one.
 
-        rows: 'own', the file's own matrix `rows` where it defines one, or 'full', the codistribution. states: on each set, from which lines go. samples: states of the sample box that are looked at
-        in other units.
+        rows: 'own', the file's own matrix `rows` where it defines one, or 'full', the codistribution. states: on each set, from which lines go. samples: states of the sample box at which ranks
+        are decided again in other units.
 
         >>> sorted(rod.stress(states=1, samples=2).pictures)
         ['conditioning', 'scaling']
@@ -485,12 +485,12 @@ class System:
         order: int | None = None,
         verdict: str = "certified",
     ) -> Verdicts:
-        """The rank at states of one's own, a block at a time, with the singular values: shape (states,) each.
+        """The rank at your own states, a block at a time, with the singular values: shape (states,) each.
 
         states: an array of shape (states, coordinates) with the columns of `coordinates()`, angles in radians; or arrays of shape (states,)
         by name, as a dict, a pandas.DataFrame or a structured array has them. Columns that are contiguous doubles are not copied: an array in
-        Fortran's order, or arrays by name. verdict: what every rank has to be; the cheapest numbers that suffice are taken, and better ones where a
-        state needs them. A rank that is short is certified where the state is rational, that is where no sine of a double stands in the rows.
+        Fortran's order, or arrays by name. verdict: what every rank has to be; the cheapest number type that suffices is used; a state
+        that it does not decide escalates to a higher precision. A rank that is short is certified where the state is rational, that is where no sine of a double stands in the rows.
         at, order: as in `rank`. Whether a state lies in the sample box is not asked.
 
         >>> rod.verdicts(numpy.array([[0.1, 0.2], [3.0, -1.0]])).rank
@@ -506,7 +506,7 @@ class System:
         at: At = None,
         order: int | None = None,
     ) -> Table:
-        """How well each unknown is observable at states of one's own: its standard deviation, normalised by its prior one over the sample box.
+        """How well each unknown is observable at your own states: its standard deviation, normalised by its prior one over the sample box.
 
         A column an unknown, of shape (states,); infinite where it is unobservable, or not distinguishable from it; NaN at a pole. These are the
         numbers of the maps: every Lie derivative of up to `order` fields is measured up to the standard deviation of its values over the sample
@@ -667,9 +667,9 @@ def import_model(
 ) -> System:
     """The system of a model file of another program: Julia (StructuralIdentifiability.jl, ModelingToolkit.jl), SBML, StrikePy, STRIKE-GOLDD, or formulas that SymPy or CasADi printed.
 
-    Nothing of the file is executed. format: 'julia', 'sbml', 'strikepy', 'strike-goldd' or 'formulas', found out unless given. model: which of several, by name or number. outputs: in place of
+    Nothing of the file is executed. format: 'julia', 'sbml', 'strikepy', 'strike-goldd' or 'formulas', recognised unless given. model: which of several, by name or number. outputs: in place of
     those of the file. unknown: parameters that are to be identified, 'all', or [] for none; what the file says unless given. inputs, unknown_inputs: parameters that are signals which
-    somebody, or nobody, knows. states: in the order of a vector of rates. What was renamed and what else is worth knowing stands in comments of `source`.
+    are known, or unknown. states: in the order of a vector of rates. What was renamed and what else is worth knowing stands in comments of `source`.
 
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = pathlib.Path(folder, "decay.txt")
@@ -701,7 +701,7 @@ def import_problem(path: str | os.PathLike[str], out: str | os.PathLike[str]) ->
 
 
 def verify(folder: str | os.PathLike[str], *, seed: int = 1, times: bool = True) -> Page:
-    """Takes a paper, a folder or one proof file, through everything, into a page; `.json` is what was found.
+    """Checks a whole paper, a folder or one proof file, and makes a page; `.json` is what was found.
 
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = pathlib.Path(folder, "rod.proof")

@@ -205,7 +205,7 @@ impl From<ReadError> for Trouble {
     }
 }
 
-/// Takes a paper through everything: the JSON of what was found, and the page.
+/// Checks a whole paper: the JSON of what was found, and the page.
 #[pyfunction]
 pub fn verify(py: Python<'_>, folder: PathBuf, seed: u64, times: bool) -> PyResult<(String, String)> {
     let found = interruptible(py, move |interrupt| {

@@ -1,4 +1,4 @@
-//! `palmistry advise`: how palms may move so that they touch all of a body; what to measure besides in any system.
+//! `palmistry advise`: how palms may move so that they touch all of a body; what else to measure in any system.
 
 use super::arguments::By;
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
@@ -12,21 +12,21 @@ use palmistry::report::{advice_json, advice_text};
 use palmistry::system::Code;
 use std::path::PathBuf;
 
-/// Plans an experiment: what to measure besides in any system, or how palms should move.
+/// Plans an experiment: what else to measure in any system, or how palms should move.
 ///
-/// With --identify FILE is a proof file. All minimal sets of further outputs, known parameters, inputs and experiments are found by which the unknowns
-/// that are named become identifiable or observable, the smallest sets first. That a set suffices, and that nothing of it can be left out, is decided as for any file.
+/// With --identify FILE is a proof file. It finds all minimal sets of further outputs, known parameters, inputs and experiments that make the named
+/// unknowns identifiable or observable, the smallest sets first. That a set suffices, and that nothing of it can be left out, is decided as a claim is.
 ///
 /// Without it FILE is a scene, and motions of two palms are searched for that touch all normals of a body and hold it all the time.
-/// The scene has the body, how it starts, how long the experiment lasts, and the observer. Courses of the palms (an angle, a rate and a swing each) are drawn
-/// within limits, the body is moved by Newton's laws, and the best courses are varied, less and less. Of those that touch most it is asked how well windows of
-/// the measurements could determine the state: the Cramér-Rao bound at the truth, with the scene's sensors. What is found is printed with the lines to paste
+/// The scene has the body, how it starts, how long the experiment lasts, and the observer. Motions of the palms (an angle, a rate and a swing each) are drawn
+/// within limits, the body is moved by Newton's laws, and the best are varied in smaller and smaller steps. For those that touch most, it computes how well windows of
+/// the measurements determine the state: the Cramér-Rao bound at the truth, with the scene's sensors. What is found is printed with the lines to paste
 /// into [palms]. The search is random: the same seed gives the same answer with any number of threads, and more trials may find better ones.
 ///
-/// Of a scene with motion = "spatial" it searches for runs: how to lay the body on its three palms, and how to set it turning, so that the hull of all contacts grows most, run by run, beside as
-/// many runs drawn at random.
+/// For a scene with motion = "spatial" it searches for runs: how to lay the body on its three palms, and how to set it turning, so that the hull of all contacts grows most, run by run, compared with
+/// as many random runs.
 ///
-/// The exit status is 1 where no set suffices, no course was found that holds the body to the end, or fewer runs than were asked.
+/// The exit status is 1 where no set suffices, no motion was found that holds the body to the end, or fewer runs than were asked.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry advise mysystem.proof --identify k1,k2
@@ -49,10 +49,10 @@ pub(crate) struct Advise {
     /// With --identify: an expression that can be measured (may be repeated); each state unless given.
     #[arg(long, value_name = "EXPRESSION", requires = "identify")]
     pub(super) measure: Vec<String>,
-    /// With --identify: sets of no more additions are looked for.
+    /// With --identify: the largest number of additions in a set.
     #[arg(long, value_name = "N", default_value_t = 3, requires = "identify", value_parser = clap::value_parser!(u8).range(1..=8))]
     pub(super) at_most: u8,
-    /// How many courses are tried (400 unless given); in space for each run (32 unless given).
+    /// How many motions are tried (400 unless given); in space for each run (32 unless given).
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(super) trials: Option<u64>,
     /// The least and the greatest angle of palm 1 against the ground, rad (0.2,1.2 unless given).

@@ -21,11 +21,11 @@ use std::time::Instant;
 
 /// Proves full rank on boxes of states, and says on which part of the sample box.
 ///
-/// Branch and bound with interval arithmetic. The sample box is halved again and again; a box is done with when some
+/// Branch and bound with interval arithmetic. The sample box is halved again and again; a box is finished when some
 /// minor of the rows is proved, with outward rounding, to be different from zero at every state in it. The other boxes
-/// are those in which a minor is proved to vanish somewhere, those with a pole, and those that are undecided. The
+/// are those in which a minor is proved to vanish somewhere, those that contain a pole, and those that are undecided. The
 /// proved fraction is a lower bound, and grows with the budget. Angles and parameters without a range keep their value;
-/// what the file says to avoid is part of the box, and the fraction is given without it, too.
+/// what the file says to avoid is part of the box, and the fraction is also given without it.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry certify proofs/martinelli2005/polar.proof --box r=1/10..10 --budget 30
@@ -43,13 +43,13 @@ pub(crate) struct Certify {
         allow_hyphen_values = true
     )]
     ranges: Vec<String>,
-    /// The seconds to work.
+    /// How long to work, in seconds.
     #[arg(long, default_value_t = 10.0, value_name = "SECONDS", value_parser = seconds)]
     budget: f64,
-    /// Look at N boxes, however long it takes: the same result on every machine and any number of threads.
+    /// Examine N boxes, however long it takes: the same result on every machine and any number of threads.
     #[arg(long, value_name = "N", conflicts_with = "budget")]
     boxes: Option<u64>,
-    /// Look at all boxes of at most N halvings: the same result however the boxes are dealt out, to the last bit.
+    /// Examine all boxes of at most N halvings: the same result however the boxes are distributed, to the last bit.
     #[arg(long, value_name = "N", conflicts_with_all = ["budget", "boxes"], value_parser = clap::value_parser!(u16).range(0..=1000))]
     depth: Option<u16>,
     /// Which rows are to have full rank.
@@ -63,7 +63,7 @@ pub(crate) struct Certify {
     state: Option<PathBuf>,
     #[command(flatten)]
     shards: Shards,
-    /// With '--merge': write where the merged search stands to a file, from which '--state' goes on.
+    /// With '--merge': write the state of the merged search to a file, which '--state' continues.
     #[arg(long, value_name = "FILE", requires = "merge")]
     merged: Option<PathBuf>,
     /// The two coordinates of the map; two that matter if none are named.
@@ -72,13 +72,13 @@ pub(crate) struct Certify {
     /// Write certify.json and the pictures curve.svg and map.svg into this folder.
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Write the largest proved boxes, each with the rows of its minor, to a file that 'palmistry recheck' checks alone.
+    /// Write the largest proved boxes, each with the rows of its minor, to a file for 'palmistry recheck'.
     #[arg(long, value_name = "FILE")]
     verdicts: Option<PathBuf>,
     /// How many boxes that file holds at most, the largest first.
     #[arg(long, default_value_t = 2000, value_name = "N", requires = "verdicts", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     verdict_boxes: u32,
-    /// Print one JSON object with 'proved_fraction', 'minor_vanishes_fraction', 'rest_fraction', 'curve' and more.
+    /// Print one JSON object with 'proved_fraction', 'minor_vanishes_fraction', 'open_fraction', 'curve' and more.
     #[arg(long)]
     pub json: bool,
 }
@@ -185,7 +185,7 @@ impl Certify {
         if !self.state.as_ref().is_some_and(|file| file.exists()) {
             return Err(Unusable::report(
                 Code::Option,
-                "the open boxes of a search are dealt out, and '--state' names none",
+                "shards share the open boxes of a search, and '--state' names none",
                 "search for a while with --state FILE first, without --shard",
             ));
         }

@@ -10,10 +10,10 @@ use palmistry::system::{Examination, MOST_PROBLEMS};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// Reads proof files, and says all that is wrong with each: syntax, names, kinds of values, references. Decides nothing.
+/// Reads proof files, and lists every mistake in each: syntax, names, kinds of values, references. Decides nothing.
 ///
-/// What only follows from another mistake is not reported: a name whose definition cannot be read is not unknown as well. Exit
-/// status 0 when all files can be used, 2 when one cannot, as 'prove' would have it.
+/// What only follows from another mistake is not reported: a name whose definition cannot be read is not also reported as unknown. Exit
+/// status 0 when all files can be used, 2 when one cannot, as with 'prove'.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry check mysystem.proof            every mistake, each at its place

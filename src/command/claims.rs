@@ -36,7 +36,7 @@ pub(crate) struct Claims {
     /// Write the outcomes as JUnit XML, for a CI system.
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
-    /// Write what the verdicts rest on to a file that 'palmistry recheck' checks alone.
+    /// Write what the verdicts rest on to a file for 'palmistry recheck'.
     #[arg(long, value_name = "FILE")]
     pub verdicts: Option<PathBuf>,
     /// Give each statement in LaTeX too: a line of its own, or 'latex' in the JSON.

@@ -19,8 +19,8 @@ const FILES: Folder<'_> = &[
 
 /// Shows on a system of five lines what the program does: observability, a proof, an estimate from noisy measurements, a page.
 ///
-/// Makes a folder with a proof file and a scene, and runs four commands on them, each shown before its answer: they take some
-/// seconds together. The files are yours to change.
+/// Makes a folder with a proof file and a scene, and runs four commands on them, each shown before its answer: together they take
+/// some seconds. The files are yours to change.
 #[derive(Args)]
 #[command(after_help = "Example:
   palmistry demo                  makes the folder palmistry-demo and answers four questions")]

@@ -32,8 +32,8 @@ pub(crate) struct Eval {
     /// Significant decimal digits.
     #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     digits: u16,
-    /// What the digits have to be: 'certified', all of them certain, or 'computed', agreed on by doubles and
-    /// double-doubles. The cheapest numbers that suffice are taken; 'escalated' counts those that did not suffice.
+    /// How the digits are established: 'certified', all of them certain, or 'computed', agreed on by doubles and
+    /// double-doubles. The cheapest number type that suffices is used; 'escalated' counts those that did not suffice.
     #[arg(long, value_enum, default_value_t = Wanted::Certified, value_name = "HOW")]
     verdict: Wanted,
     /// Print one JSON object with 'value' (a string), 'exact' where the value is rational, 'how' its digits are certain,

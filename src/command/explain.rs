@@ -13,7 +13,7 @@ use serde_json::json;
   palmistry explain                         all codes, a line each
   palmistry explain E201                    a name that is not known")]
 pub(crate) struct Explain {
-    /// The code at the end of a message, as E201.
+    /// The code at the end of a message, such as E201.
     #[arg(value_name = "CODE")]
     code: Option<String>,
     /// Print one JSON object: 'errors', each with code, title and page, the page in Markdown.

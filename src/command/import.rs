@@ -19,10 +19,10 @@ const LONGEST_FILE: u64 = 16 << 20;
 /// Takes a model of another program and writes it as a proof file, with its source cited.
 ///
 /// Nothing of the file is run: it is read as text, by a reader of its format. What cannot be read is named with its line, and what was
-/// written is read back before anybody gets it. Expressions are taken over exactly (a decimal is the fraction that it denotes), names
+/// written is read back before you get it. Expressions are taken over exactly (a decimal is the fraction that it denotes), names
 /// that mean something else in proof files are changed, and a comment in the new file says so.
 ///
-/// Formats are recognised by what the file says and how it is called:
+/// Formats are recognised by the content and the name of the file:
 ///   julia         @ODEmodel and @DDSmodel of StructuralIdentifiability.jl; @parameters, @variables, D(x) ~ ... and
 ///                 measured_quantities = [y ~ x] of ModelingToolkit.jl
 ///   sbml          SBML core, levels 2 and 3, without events, delays and algebraic rules
@@ -45,29 +45,29 @@ const LONGEST_FILE: u64 = 16 << 20;
 pub(crate) struct Import {
     /// The foreign file.
     pub(super) file: PathBuf,
-    /// The format of the file, where it is not to be found out.
+    /// The format of the file; recognised unless given.
     #[arg(long, value_enum, value_name = "FORMAT")]
     from: Option<From>,
-    /// Write the proof file here; without it, it is printed. Of a PEtab problem NAME.proof, the scene NAME.toml and the measurements NAME.csv
+    /// Write the proof file here; without it, it is printed. For a PEtab problem NAME.proof, the scene NAME.toml and the measurements NAME.csv
     /// are written side by side.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Which of several models, by its name or its number.
     #[arg(long, value_name = "NAME")]
     model: Option<String>,
-    /// What is measured, in place of what the file says: names of states, definitions or outputs; of formulas expressions too.
+    /// What is measured, in place of what the file says: names of states, definitions or outputs; for formulas expressions too.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     output: Vec<String>,
-    /// Which parameters are to be identified: all, none, or these. Without it those that the file says, and of SBML all.
+    /// Which parameters are to be identified: all, none, or these. Without it those that the file says, and for SBML all.
     #[arg(long, value_name = "all|none|NAME,...", value_delimiter = ',')]
     unknown: Vec<String>,
-    /// Parameters that are signals which somebody knows.
+    /// Parameters that are known input signals.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     input: Vec<String>,
-    /// Parameters that are signals which nobody knows.
+    /// Parameters that are unknown input signals.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     unknown_input: Vec<String>,
-    /// The states in the order of a vector of rates, of formulas that do not name them.
+    /// The states in the order of a vector of rates, for formulas that do not name them.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     state: Vec<String>,
     /// Print one JSON object with the proof file as 'proof', its 'format', what the model has, what was 'renamed' and what is worth

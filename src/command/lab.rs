@@ -25,9 +25,9 @@ const PORT: u16 = 8417;
 /// set, maps over any two coordinates, motions from two states with the same outputs, and estimates from a recording that is dropped on the
 /// page. The models that come with the program open there, and files of other programs are imported. A link holds the whole text.
 ///
-/// It serves this machine alone, without an account and without the network, until it is interrupted. Each question is answered by a
-/// process of its own, with a limit of time and memory, which a button on the page ends. Files are read in FOLDER alone, and written only
-/// where you press 'save'.
+/// It serves only this machine, without an account and without the network, until it is interrupted. Each question is answered by a
+/// process of its own, with a limit of time and memory; a button on the page ends it. Files are read only in FOLDER, and written only
+/// when you press 'save'.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry lab                             an empty page; nothing is written
@@ -45,8 +45,8 @@ pub(crate) struct Lab {
     /// Open no browser.
     #[arg(long)]
     no_open: bool,
-    /// Serve everybody who reaches this address, as a reading group does: without files, and with less time and memory for each question.
-    /// It has no password and no encryption; put it behind a server that has.
+    /// Serve everybody who reaches this address, for example a reading group: without files, and with less time and memory for each question.
+    /// It has no password and no encryption; put it behind a server that has both.
     #[arg(long, value_name = "ADDRESS", conflicts_with_all = ["folder", "port"])]
     public: Option<SocketAddr>,
     /// Print one JSON object, on a line, with the 'url'; it is there once the lab listens.

@@ -8,14 +8,14 @@ use palmistry::system::Code;
 
 /// Serves an editor over standard input and output, by the Language Server Protocol.
 ///
-/// Mistakes as 'check' finds them while one types, what a name is and its dimension, where it is declared (also in files that are
+/// It gives mistakes as 'check' finds them while you type, what a name is and its dimension, where it is declared (also in files that are
 /// imported), the outline of a file, and its normal form as 'fmt' writes it. Editors start it themselves; book/src/editors.md says
 /// how. It ends when the editor says so: with exit status 0 where the editor asked it to shut down before, with 1 where it did not.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry lsp                             started by an editor")]
 pub(crate) struct Lsp {
-    /// Standard input and output are the channel; understood because editors say so.
+    /// Standard input and output are the channel; accepted because editors pass it.
     #[arg(long)]
     stdio: bool,
 }

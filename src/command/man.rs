@@ -14,7 +14,7 @@ use std::path::PathBuf;
   palmistry man | man -l -                  the page of the program
   palmistry man --out ~/.local/share/man/man1")]
 pub(crate) struct Man {
-    /// Write 'palmistry.1' and a page for each command, as 'palmistry-prove.1', into this folder.
+    /// Write 'palmistry.1' and a page for each command, such as 'palmistry-prove.1', into this folder.
     #[arg(long, value_name = "FOLDER")]
     pub(super) out: Option<PathBuf>,
 }

@@ -70,18 +70,18 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(name = "palmistry", version, disable_version_flag = true, max_term_width = 110)]
 #[command(
-    after_help = "Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written, 3 cut off by a signal before the end.",
+    after_help = "Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written, 3 incomplete: cut off by a signal, or left undecided.",
     after_long_help = "Where to begin:
   palmistry demo                            four questions and their answers on a system of five lines
   palmistry lab                             write a system in the browser, and see its answers beside it
-  palmistry new mypaper                     a folder with a small paper that proves, a comment on each line
+  palmistry new mypaper                     a folder with a small paper whose claims are all proved, with comments
   palmistry check mysystem.proof            is it a proof file? every mistake, each at its place
   palmistry prove mysystem.proof --watch    decide its claims, and again whenever it is changed
   palmistry rank mysystem.proof             which states and parameters are observable or identifiable?
   palmistry eval mysystem.proof 'L(f, x)' --at x=1/3 --digits 40
-  palmistry verify mypaper                  a folder of proof files taken through everything, as a page with pictures
+  palmistry verify mypaper                  check a folder of proof files; writes a page with pictures
 
-Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written, 3 cut off by a signal before the end."
+Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written, 3 incomplete: cut off by a signal, or left undecided."
 )]
 struct Cli {
     #[command(subcommand)]

@@ -19,7 +19,7 @@ const TEMPLATE: Folder<'_> = &[
     ("pendulum.proof", include_str!("template/pendulum.proof")),
 ];
 
-/// Makes a folder with a paper that proves, to be changed into your own: a system, claims, sets and pictures, with a comment on
+/// Makes a folder with a small paper whose claims are all proved, for you to change: a system, claims, sets and pictures, with a comment on
 /// each line.
 ///
 /// The folder must not be there yet, or be empty.
@@ -48,7 +48,8 @@ impl New {
         })?;
         let paths: Vec<PathBuf> = TEMPLATE.iter().map(|(name, _)| folder.join(name)).collect();
         let shown = shown_path(folder);
-        let words = || format!("{shown} is a paper that proves; next: palmistry verify {shown}");
+        let words =
+            || format!("{shown} is a paper whose claims are all proved; next: palmistry verify {shown}");
         let object = json!({ "folder": name_of(folder), "files": paths.iter().map(|path| name_of(path)).collect::<Vec<_>>() });
         Files::default().print(Form::of(self.json), object, words, Status::AsExpected)
     }

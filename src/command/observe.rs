@@ -30,24 +30,24 @@ use std::path::{Path, PathBuf};
 /// SCENE is a TOML file: the state at the start and the inputs as functions of time, or the body, the palms and how they move;
 /// the sensors; and the observers with what they estimate, what they know and their initial guesses (the book has all keys). The
 /// observers know only the measurements and the equations of the scene's proof file. For each update there are the true and
-/// the recovered states, the error, the bound of Cramér and Rao below which no unbiased estimate can be, steps and time.
+/// the recovered states, the error, the Cramér-Rao bound, steps and time.
 ///
 /// With --data - the measurements come from standard input as they are written (CSV), and each window is answered as soon as it is there: with
-/// --json in a line of JSON, and one at the end. Memory is bounded by a window. What ends a stream early takes nothing back that was answered.
+/// --json in a line of JSON, and one at the end. Memory is bounded by a few windows. If a stream ends early, the answers given before stand.
 ///
-/// A scene with [experiments] has several, each with conditions of its own, and one set of parameters: they are fitted at once by maximum likelihood, from many starts.
-/// `palmistry import` makes such scenes of problems in the format PEtab.
+/// A scene with [experiments] has several experiments, each with its own conditions, and one set of parameters: the parameters are fitted at once by maximum likelihood, from many starts.
+/// `palmistry import` makes such scenes from PEtab problems.
 ///
 /// With --data the measurements come from a CSV or Parquet file with the columns that the model needs (time, outputs, inputs);
 /// faulty rows are reported by number and handled as the scene says, and what --record wrote gives the same answer. With --studies the scene's studies run as well: the
-/// error over many seeds at several levels of noise beside the bound, and the first guesses from which each method arrives.
+/// error over many seeds at several levels of noise beside the bound, and the initial guesses from which each method converges to the truth.
 ///
 /// Studies can be cut into shards of trials, with --shard and --part, each a process of its own; --merge then answers as --studies
 /// does in one run, to the last bit.
 ///
 /// An update that converged is tested against the noise that the scene states: its residuals have to pass the chi-square test. Where
 /// no noise is stated it is estimated from the residuals, which then have to be white. The exit status is 1 where an update
-/// converged and does not fit, a moving-horizon method has no update that does, or the body is none of the scene's library.
+/// converged and does not pass, a moving-horizon method has no update that passes, or the body is not in the scene's library.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry observe proofs/moll2002/scenes/section_4_6.toml --out observed
@@ -64,10 +64,10 @@ pub(crate) struct Observe {
     /// Run the scene's studies, too.
     #[arg(long)]
     pub(super) studies: bool,
-    /// Write a page with pictures (index.html) and observe.json into this folder; of a body in space also its surfaces, as PLY and OBJ.
+    /// Write a page with pictures (index.html) and observe.json into this folder; for a body in space also its surfaces, as PLY and OBJ.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["shard", "missing"])]
     pub(super) out: Option<PathBuf>,
-    /// Write the measurements to a file, CSV or Parquet by its extension; - is standard output (CSV), and then nothing is observed.
+    /// Write the measurements to a file, CSV or Parquet by its extension; - is standard output (CSV), and then no observer runs.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
     pub(super) record: Option<PathBuf>,
     /// Write all of the simulated motion to a file, CSV or Parquet: poses, contact forces, torques, energies, the truth.
@@ -81,7 +81,7 @@ pub(crate) struct Observe {
     pub(super) track: Option<PathBuf>,
     #[command(flatten)]
     pub(super) shards: Shards,
-    /// Print no times: two runs with one seed on one machine then write the same to the last byte, as a merge does, which knows none.
+    /// Print no times: two runs with one seed on one machine then write the same to the last byte, as a merge does, which has no times.
     #[arg(long)]
     pub(super) no_times: bool,
     /// Print one JSON object: 'observers' with their 'updates' and 'end', and the studies.
@@ -290,7 +290,7 @@ impl Observe {
         match asked.iter().find(|(_, is_asked)| *is_asked) {
             Some((name, _)) if self.records_to_output() => {
                 let message = format!(
-                    "with --record - the measurements are all that is printed, and nothing is observed: {name} asks for more"
+                    "with --record - the measurements are all that is printed, and no observer runs: {name} asks for more"
                 );
                 Err(Unusable::report(Code::Option, message, "record to a file, or leave the other out"))
             }

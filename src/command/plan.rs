@@ -17,12 +17,12 @@ use std::path::{Path, PathBuf};
 
 /// Says what a scene requires of its model, before anything is estimated.
 ///
-/// What the scene and its measurements fix is put into the model: palms at rest or at one rate, known masses, columns that never change. The states that are left, the
-/// terms that vanish and the inputs that are driven make the least model, a proof file whose claims say that it is the scene's model under these conditions, torques
-/// included; they are decided. Then the rank: what the measurements can tell generically, what of the unknowns that are estimated is unobservable and which of them, if it
-/// were known, would cure that, and the rank along the motion itself.
+/// What the scene and its measurements fix is put into the model: palms at rest or at one rate, known masses, columns that never change. The remaining states, the
+/// nonzero terms and the driven inputs make the least model, a proof file whose claims say that it is the scene's model under these conditions, torques
+/// included; they are decided. Then the rank: which unknowns the measurements determine generically, which estimated unknowns are unobservable, and which of them would
+/// have to be known to make the rest observable; and the rank along the motion itself.
 ///
-/// Observers put in the columns that drive their model and never change, and follow no state that they need not.
+/// Observers substitute driving columns that never change, and integrate only the states that they need.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry plan proofs/moll2002/scenes/fixed_palms.toml

@@ -15,16 +15,16 @@ use std::f64::consts::PI;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Where a body lies between two slow palms, how its stable poses hang together, and how palms have to move to turn it or to touch all of it.
+/// The stable poses of a body between two slow palms, how they are connected, and palm motions that turn the body or touch all of it.
 ///
 /// Without friction a body that two flat palms hold rests where its centre of mass is lowest. Over the palms' angles its stable poses form
-/// a surface. At its folds the body jumps; along it, it can be led. For the body of a SCENE or a --shape there are: the stable poses on a level table and
+/// a surface. At its folds the body jumps; along the surface the palms can move it without a jump. For the body of a SCENE or a --shape it gives: the stable poses on a level table and
 /// between --palms with the share of orientations that end in each; the components of the surface at several margins from parallel palms, and
 /// whether a cycle of palm angles turns the body; what interval arithmetic proves of that; where its boundaries meet as the palms close; a
 /// shortest plan that touches every normal, beside the plan of figure 3.14, and with --turn one from an orientation to another.
 ///
-/// With --bodies N there is no one body: the conjecture that all orientations can be reached is tried on N random bodies of each family.
-/// That is evidence and no proof; what proves is the certificate of a single body. The same seed gives the same bodies and the same answer with any
+/// With --bodies N the conjecture that all orientations can be reached is tested on N random bodies of each family.
+/// That is evidence; only the certificate of a single body is a proof. The same seed gives the same bodies and the same answer with any
 /// number of threads.
 #[derive(Args, Clone)]
 #[command(after_help = "Examples:
@@ -38,13 +38,13 @@ pub(crate) struct Poses {
     /// A body: spline:Q1,Q2,Q3 (radii of section 3.4), centripetal:Q1,Q2,Q3, ellipse:A,B, or harmonics:MEAN,P2,Q2,P3,Q3... of the support function, in m.
     #[arg(long, value_name = "BODY", conflicts_with = "bodies")]
     shape: Option<String>,
-    /// The centre of mass of --shape in its own frame, in m; that of one material unless given.
+    /// The centre of mass of --shape in its own frame, in m; that of a uniform body unless given.
     #[arg(long, value_name = "X,Y", requires = "shape", allow_hyphen_values = true)]
     centre: Option<String>,
     /// Palm angles phi1 and phi2 (rad) at which all stable poses are listed.
     #[arg(long, value_name = "PHI1,PHI2", default_value = "0.6,1.6")]
     palms: String,
-    /// How far palms keep from being parallel to each other or to the ground, rad: of plans and certificates.
+    /// How far palms keep from being parallel to each other or to the ground, rad: for plans and certificates.
     #[arg(long, value_name = "RAD", default_value_t = 0.15)]
     margin: f64,
     /// Margins at which components are reported, rad.
@@ -56,7 +56,7 @@ pub(crate) struct Poses {
     /// Both contacts stay in this part of their palms, in m from where the palms meet.
     #[arg(long, value_name = "NEAR,FAR", allow_hyphen_values = true)]
     pad: Option<String>,
-    /// Poses of plans have to stand it that either palm is off by this, rad.
+    /// Poses of a plan stay stable if either palm is off by this angle, rad.
     #[arg(long, value_name = "RAD", default_value_t = 0.0)]
     tolerance: f64,
     /// Nodes along a side of the grid of palm angles for plans and pictures; two and four times as many are tried where it has no plan, up to 200.
@@ -65,7 +65,7 @@ pub(crate) struct Poses {
     /// How often the certificate halves its squares.
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=7))]
     levels: u32,
-    /// Try the conjecture on so many random bodies of each family.
+    /// Test the conjecture on this many random bodies of each family.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     bodies: Option<u64>,
     /// Only this family of random bodies; may be given again.
@@ -80,7 +80,7 @@ pub(crate) struct Poses {
     /// Write a page with pictures (index.html) and poses.json into this folder.
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Print one JSON object: of a body its 'components', 'certificate', 'touch_all' and more; of random bodies 'families'.
+    /// Print one JSON object: for a body its 'components', 'certificate', 'touch_all' and more; for random bodies 'families'.
     #[arg(long)]
     pub json: bool,
 }

@@ -19,7 +19,7 @@ use std::time::Instant;
 ///
 /// Exit status 0 only when each claim has the verdict that its file expects: 'claim' proved (or what 'expect' says),
 /// 'erratum' with the printed form refuted and the corrected one proved, and likewise 'damaged', 'scan', 'convention' and
-/// 'loose'. A claim whose two sides are one expression 'holds by definition'; it is not called 'proved', and is as expected. A claim
+/// 'loose'. A claim whose two sides are the same expression 'holds by definition'; it is not called 'proved', and is as expected. A claim
 /// is about all values of its symbols, whatever values the file gives to parameters; where the verdict at these values differs,
 /// the program says so.
 #[derive(Args, Clone)]
@@ -38,8 +38,8 @@ pub(crate) struct Prove {
     #[arg(long, conflicts_with = "coq")]
     pub watch: bool,
     /// Write what is proved as theorems for the proof assistant Coq into this folder: a file for each proof file, with its definitions and
-    /// fields, and a library that is proved there. Coq computes all derivatives anew. Identities are written, with conditions that
-    /// give a variable, and ranks that are reached; what is left out stands at the end of each file.
+    /// fields, and a library that is proved there. Coq computes all derivatives anew. It writes identities (also under conditions solved
+    /// for a variable) and ranks that are reached at a state; what is left out stands at the end of each file.
     #[arg(long, value_name = "DIR")]
     pub coq: Option<PathBuf>,
 }

@@ -32,12 +32,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Decides the rank of the observability codistribution at sampled states.
 ///
-/// First what holds generically, except on a set of measure zero: each state observable or not, each parameter identifiable or not, and
+/// It first gives what holds generically, except on a set of measure zero: each state observable or not, each parameter identifiable or not, and
 /// the rank, by power series at random points modulo random primes. Then at sampled states: Lie derivatives along the drift and the inputs are added in increasing order until the rank
 /// stops growing or reaches the dimension. At every state the rank is computed by singular values and certified by exact
 /// arithmetic at that very state. Where the file
 /// defines a matrix named 'rows', its rank is decided at the same states too. Parameters without a range have the values of
-/// the file, and the answer says which, as it says from where it draws what has neither; a claim 'rank = n' in a file is about all values.
+/// the file, and the answer says which, and from which ranges it draws symbols that have neither range nor value; a claim 'rank = n' in a file is about all values.
 #[derive(Args)]
 #[command(group(ArgGroup::new("counted").args(["global", "functions"]).multiple(true)))]
 #[command(after_help = "Examples:
@@ -55,8 +55,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(crate) struct Rank {
     /// The proof file.
     pub(super) file: PathBuf,
-    /// How many states are drawn from the sample box, to see where the rank drops; with 0 only the generic rank is decided, which takes
-    /// no Lie derivatives and no time [default: 1000, where the Lie derivatives are short enough to be written down in a moment, else 0].
+    /// How many states are drawn from the sample box, to see where the rank drops; with 0 only the generic rank is decided, which writes
+    /// down no Lie derivatives and is quick [default: 1000, where the Lie derivatives are short enough to be written down in a moment, else 0].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=1_000_000_000_000_000))]
     samples: Option<u64>,
     /// Seed of the sampled states.
@@ -72,33 +72,33 @@ pub(crate) struct Rank {
     /// repeated).
     #[arg(long = "where", value_name = "CONDITION")]
     conditions: Vec<String>,
-    /// What every rank has to be: 'certified', proved at the very state, or 'computed', by numbers that round. The
-    /// cheapest numbers that suffice are taken, and better ones where a state needs them.
+    /// What every rank has to be: 'certified', proved at the very state, or 'computed', in floating point. The
+    /// cheapest number type that suffices is used; a state that it does not decide escalates to a higher precision.
     #[arg(long, value_enum, default_value_t = Wanted::Certified, value_name = "HOW")]
     verdict: Wanted,
     /// Give the singular values of the state whose rank is hardest to decide, and its condition, to N significant digits (at most 200);
     /// by doubles they have about three. The digits are what '--verdict' says: all of them certain, or agreed on by
-    /// doubles and double-doubles. The cheapest numbers that suffice are taken; 'escalations' says how many number types were tried
+    /// doubles and double-doubles. The cheapest number type that suffices is used; 'escalations' says how many number types were tried
     /// before. Which state is worst is decided by doubles.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_DIGITS as i64))]
     digits: Option<u16>,
-    /// Write states with their certified ranks, minors and kernels to a file that 'palmistry recheck' checks alone.
+    /// Write states with their certified ranks, minors and kernels to a file for 'palmistry recheck'.
     #[arg(long, value_name = "FILE")]
     verdicts: Option<PathBuf>,
     /// How many states that file holds at most; they are spread over the sweep, the worst conditioned one is among them.
     #[arg(long, default_value_t = 1000, value_name = "N", requires = "verdicts", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     verdict_states: u64,
-    /// Ask the dual question instead: whether the drift and the inputs can move the state in every direction. That is the rank of
+    /// Decide accessibility instead: whether the drift and the inputs can move the state in every direction. That is the rank of
     /// the distribution that they and their brackets span (accessibility), and without the drift itself (strong
-    /// accessibility), generically and at the sampled states. Outputs play no part.
+    /// accessibility), generically and at the sampled states. Outputs are not used.
     #[arg(long, conflicts_with_all = ["digits", "verdicts", "shard", "merge", "missing"])]
     accessible: bool,
-    /// Write a proof file of the observable part of the system: its states are observable functions, its claims, which are
-    /// proved, that they move as this file says and that the outputs are the same.
+    /// Write a proof file of the observable part of the system: its states are observable functions; its claims, which are
+    /// proved, say that they move as in this file and that the outputs are the same.
     #[arg(long, value_name = "FILE")]
     reparametrise: Option<PathBuf>,
-    /// Instead of sampled states: the sets on which the rank drops, each by its equations, and a proof that off them it is what
-    /// it is generically. The parameters may have any values.
+    /// Instead of sampled states: the sets on which the rank drops, each by its equations, and a proof that elsewhere it
+    /// equals the generic rank. The parameters may have any values.
     #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "shard", "merge", "missing"])]
     where_it_drops: bool,
     /// Write a page with these sets and their proof (index.html), and drops.json, into this folder.
@@ -111,7 +111,7 @@ pub(crate) struct Rank {
     #[arg(long, conflicts_with_all = ["shard", "missing"])]
     global: bool,
     /// As '--global', and then generators of all identifiable functions: rational functions of the unknowns that have one value for given
-    /// outputs, such as k1 + k2 and k1*k2 where k1 and k2 can be exchanged, and of which every other one is a rational function.
+    /// outputs, such as k1 + k2 and k1*k2 where k1 and k2 can be exchanged. Every other such function is a rational function of these.
     #[arg(long, conflicts_with_all = ["shard", "missing"])]
     functions: bool,
     /// With '--global' and '--functions': how much work may be done, in products of residues; what takes more is undecided.
@@ -129,7 +129,7 @@ pub(crate) struct Rank {
     details: bool,
     #[command(flatten)]
     shards: Shards,
-    /// Print no times: two runs with one seed then print the same to the last byte, as a merge does, which knows none.
+    /// Print no times: two runs with one seed then print the same to the last byte, as a merge does, which has no times.
     #[arg(long)]
     no_times: bool,
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.

@@ -14,20 +14,20 @@ use std::path::PathBuf;
 /// Checks a file of verdicts that 'prove', 'rank' or 'certify' wrote with '--verdicts', against the proof files that it names.
 ///
 /// Each claim is read from its proof file. A refutation is evaluated again at its witness, a certified rank by its minor and its
-/// kernel, a certificate box by box: these are confirmed or not. An equation is confirmed where its two sides are one once they are
+/// kernel, a certificate box by box: these are confirmed or not. An equation is confirmed where both sides become the same expression when
 /// multiplied out, a generic rank and what is observable by elimination among the expressions themselves. What takes too much
-/// work for that is tried at further states, and is half confirmed or consistent. Exit status 0 only when nothing failed.
+/// work for that is tested at further states, and is half confirmed or consistent. Exit status 0 only when nothing failed.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry prove mysystem.proof --verdicts claims.json && palmistry recheck claims.json
-  palmistry recheck claims.json --seed 2                   proofs are tried at other states")]
+  palmistry recheck claims.json --seed 2                   proofs are tested at other states")]
 pub(crate) struct Recheck {
     /// The verdict file.
     pub(super) file: PathBuf,
     /// The folder from which the names of proof files are read.
     #[arg(long, default_value = ".", value_name = "FOLDER")]
     proofs: PathBuf,
-    /// Seed of the states at which proofs are tried.
+    /// Seed of the states at which proofs are tested.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
     /// Print one JSON object: 'verdicts' with file, id, kind, finding and reason, and the counts.

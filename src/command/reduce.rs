@@ -13,10 +13,10 @@ use palmistry::system::{Assignment, Code, given_number};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// Writes the least model that a system is under conditions, and proves that it is that.
+/// Writes the least model of a system under conditions, and proves that both agree there.
 ///
-/// Conditions (--fix) are put in, and have to stay met along the drift and every input. Then is left out what they make superfluous: states that they give, constants
-/// that are known (--known) or measured by themselves, states on which no output depends, signals that nothing needs, and of each conservation law (a sum of states
+/// Conditions (--fix) are put in, and must hold along the drift and every input. Then everything that they make superfluous is left out: states that they give, constants
+/// that are known (--known) or directly measured, states on which no output depends, signals that nothing needs, and of each conservation law (a sum of states
 /// with rational factors) one state, whose amount becomes an unknown constant.
 ///
 /// The new file imports the larger one. Its claims say that conditions stay met, that the larger system moves as the smaller one wherever they hold, and that the
@@ -35,7 +35,7 @@ pub(crate) struct Reduce {
     /// Conditions, as in 'omega1 = 0' or 'omega2 = omega1', or several: 'x = 0, y = 1' (may be repeated).
     #[arg(long, value_name = "CONDITION")]
     fix: Vec<String>,
-    /// States and unknown constants that are known, with a value or without: a constant becomes a parameter, a state that moves an output.
+    /// States and unknown constants that are known, with a value or without: a constant becomes a parameter, and a state that varies becomes an output.
     #[arg(long, value_name = "NAME[=VALUE],...", value_delimiter = ',')]
     known: Vec<String>,
     /// Input fields that nothing drives.

@@ -24,17 +24,17 @@ const HEAD: u64 = 256;
 /// The options of commands whose work can be cut.
 #[derive(Args, Clone)]
 pub(crate) struct Shards {
-    /// Do shard K of N alone, counted from 1, and write what was found into the folder '--part'. Where its part is there and whole,
+    /// Do shard K of N alone, counted from 1, and write what was found into the folder '--part'. If its part exists and is complete,
     /// nothing is done.
     #[arg(long, value_name = "K/N", requires = "part", conflicts_with_all = ["merge", "missing"])]
     pub shard: Option<Shard>,
     /// The folder of the parts.
     #[arg(long, value_name = "DIR", requires = "shard")]
     pub part: Option<PathBuf>,
-    /// Answer from the parts in this folder, which have to be all of them: the same answer as that of one run.
+    /// Answer from the parts in this folder, which must be complete: the same answer as that of one run.
     #[arg(long, value_name = "DIR", conflicts_with = "missing")]
     pub merge: Option<PathBuf>,
-    /// Print the numbers of those of N shards whose part is not in the folder, a line each.
+    /// Print the numbers of those of N shards whose part is not in the folder, one per line.
     #[arg(long, num_args = 2, value_names = ["DIR", "N"])]
     pub missing: Option<Vec<String>>,
 }

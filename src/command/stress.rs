@@ -16,22 +16,22 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Takes numbers to the extremes: how near to a singular set, and how large, before a rank is misreported.
+/// Tests number types at extreme states: how near to a singular set, and at which scales, a rank is first reported wrongly.
 ///
 /// Lines approach every singular set down to a distance of 1e-15. At each point, an exact rational state, the rank is decided in single
-/// precision, in doubles by numpy's rule, in doubles after equilibration, with the errors that intervals
-/// know, by intervals alone, in double-doubles, and by the number types that 'palmistry rank' takes in turn; beside them stands the
+/// precision, in doubles by numpy's rule, in doubles after equilibration, with error bounds from
+/// intervals, by intervals alone, in double-doubles, and by the number types that 'palmistry rank' takes in turn; beside them stands the
 /// certified rank of the rows: the file's own, or the Lie derivatives that suffice at generic states. For each the table has the
 /// distance at which it first reports another rank, and at which an entry first loses more than half of its digits, each as
-/// a range over the states; and at how many states on the set itself it has the exact rank of the rows, since whoever always says
-/// "full" (a column of its own) is never wrong beside a set.
+/// a range over the states; and at how many states on the set itself it has the exact rank of the rows, since a method that always answers
+/// "full" (a column of its own) is right everywhere off the set.
 ///
-/// Then every quantity is scaled from 1e-150 to 1e150, and the states are looked at in other units, which should change
-/// no verdict: units of the dimensions that the file declares, or each state in a smaller unit where it declares none. Where numbers overflow or are divided by zero, what did so is named.
+/// Then every quantity is scaled from 1e-150 to 1e150, and ranks are decided again in other units, which should change
+/// no verdict: units of the dimensions that the file declares, or each state in a smaller unit where it declares none. Where numbers overflow or are divided by zero, the operation is named.
 ///
 /// The sets are those that a file names ('set', 'pole', and lines to infinity); where it names none, what it says to avoid,
-/// the divisors of its rows, and each quantity of its sample at zero. Without FILE these are the systems with named sets of a
-/// paper that came with the program.
+/// the divisors of its rows, and each quantity of its sample at zero. Without FILE, the systems with named sets of a
+/// paper that came with the program are taken.
 #[derive(Args, Clone)]
 #[command(after_help = "Examples:
   palmistry stress --out stress")]
@@ -44,7 +44,7 @@ pub(crate) struct Stress {
     /// States on each set from which lines go; the range over them is reported.
     #[arg(long, default_value_t = 10, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     states: u64,
-    /// States of the sample box that are looked at in other units.
+    /// States of the sample box at which ranks are decided again in other units.
     #[arg(long, default_value_t = 200, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     samples: u64,
     /// Seed of the states.
@@ -84,7 +84,7 @@ impl Stress {
 
     /// Runs the studies, one after the other.
     fn work(&self, studies: &Mutex<Vec<StressStudy>>) -> miette::Result<()> {
-        let bar = progress(1, "to the extremes");
+        let bar = progress(1, "extreme states");
         let done = AtomicU64::new(0);
         let step = || bar.set_position(done.fetch_add(1, Ordering::Relaxed) + 1);
         let options = StressOptions {

@@ -13,12 +13,12 @@ use std::path::PathBuf;
 /// Rounds of timing.
 const ROUNDS: usize = 15;
 
-/// Measures speed against accuracy: numbers, ways to a derivative and ways to a rank, on the same states.
+/// Measures speed against accuracy: number types, methods of differentiation and of deciding a rank, on the same states.
 ///
 /// Every sensible combination computes the differentials of the file's 'rows' (or of the Lie derivatives that are
-/// needed) and their rank at states drawn from the sample box. Digits and ranks are held against exact arithmetic at
-/// that very state. The Pareto front are the combinations that no other beats in time, digits and verdicts. States of
-/// the sample box keep away from singular sets: what happens on the way into one is another question.
+/// needed) and their rank at states drawn from the sample box. Digits and ranks are compared with exact arithmetic at
+/// that very state. The Pareto front consists of the combinations that no other beats in time, digits and verdicts. States of
+/// the sample box keep away from singular sets: 'stress' examines states near them.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry trade mysystem.proof --out trade")]

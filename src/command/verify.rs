@@ -1,4 +1,4 @@
-//! `palmistry verify`: a paper taken through everything.
+//! `palmistry verify`: all of a paper checked.
 
 use super::coq::Theorems;
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
@@ -18,14 +18,14 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Takes a paper through everything: claims, ranks on named sets, maps, lines, numbers in print, reductions, speed against
-/// accuracy, the extremes, certificates, scenes; and writes a page with pictures.
+/// Checks a whole paper: claims, ranks on named sets, maps, lines, numbers in print, reductions, speed against
+/// accuracy, extreme states, certificates, scenes; and writes a page with pictures.
 ///
 /// A paper is a folder of proof files, with a paper.toml that gives its title, its numbered equations and the scenes to run; or
-/// one proof file. Without one it is a paper that came with the program.
+/// one proof file. Without a path, a paper that came with the program is taken.
 ///
-/// Exit status 0 only when every claim has the verdict that its file expects, every named set has a rank or is the pole that it
-/// is said to be, and every reduction is proved.
+/// Exit status 0 only when every claim has the verdict that its file expects, every named set has a rank or is the pole that its
+/// file says it is, and every reduction is proved.
 #[derive(Args, Clone)]
 #[command(after_help = "Examples:
   palmistry verify mypaper --out report")]

@@ -12,9 +12,9 @@ use std::path::{Path, PathBuf};
 const PAPERS: [&str; 4] = ["moll2002", "koteich2015", "martinelli2005", "hermann1977"];
 const HEAD: &str = "# Gallery
 
-The papers and models that came with the program, each with its diagram: an arrow leads from a state to those that stand in its rate, a ring is around
-what the outputs hold, squares are signals; green is generically observable, red is not, grey is known or undecided. `palmistry verify NAME` takes a
-paper through everything; `palmistry lab` has all of them in its list; what the ranks rest on says `palmistry rank FILE`.
+The papers and models that came with the program, each with its diagram: an arrow leads from a state to those that stand in its rate, a ring marks
+states that appear in an output, squares are signals; green is generically observable, red is not, grey is known or undecided.
+`palmistry verify --paper NAME` checks all of a paper; `palmistry lab` lists all of them; `palmistry rank FILE` says what the ranks rest on.
 
 ";
 

@@ -20,6 +20,7 @@ mod likeness;
 mod numbers;
 mod pages;
 mod pictures;
+mod solutions;
 mod values;
 
 use pages::{go_through, pages};

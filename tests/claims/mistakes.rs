@@ -6,7 +6,7 @@ use std::path::Path;
 const RIGHT: &str = "system \"s\"\nstate phi, omega\nparam k = 2\nangle phi\ndrift f\n  phi' = omega\n  omega' = -k*sin(phi)\noutput phi\n";
 
 /// A text of the right file, what stands in its place, and words of the advice.
-const MISTAKES: [(&str, &str, &str); 94] = [
+const MISTAKES: [(&str, &str, &str); 101] = [
     ("-k*sin", "-k sin", "a product is written with '*', as in k*sin"),
     ("-k*sin", "-2 sin", "a product is written with '*', as in 2*sin"),
     ("-k*sin", "-2k*sin", "a product is written with '*'"),
@@ -84,6 +84,13 @@ const MISTAKES: [(&str, &str, &str); 94] = [
     ("output phi", "measure phi", "output x"),
     ("output phi", "y = phi", "as in output x"),
     ("output phi", "output: phi", "leave ':' out behind 'output'"),
+    ("output phi", "output y: phi", "let y = ..., and output y"),
+    ("output phi", "output y: 2*phi", "let y = ..., and output y"),
+    ("-k*sin(phi)", "-3!*sin(phi)", "there is no factorial"),
+    ("-k*sin(phi)", "-k*@phi", "leave '@' out"),
+    ("-k*sin(phi)", "-k*phi % 2", "no remainder of a division"),
+    ("output phi", "output phi\nclaim a: L(f phi) = omega", "as in (f, phi)"),
+    ("output phi", "output phi\nuse other = \"nowhere.proof\"", "the folder of the file that imports"),
     ("drift f\n", "dynamics f\n", "it is called 'drift'"),
     ("drift f\n", "drift f:\n", "leave ':' out behind the name"),
     ("output phi", "output phi\nclaim observable(phi)", "as in claim a: observable"),

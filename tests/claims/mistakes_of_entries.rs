@@ -432,7 +432,7 @@ fn mistakes_with_another_meaning_are_refused() {
     for entry in [
         "claim a: x = 2+-0.1",
         "let e = 1 + -2",
-        "let e = (3) at {phi = 0}",
+        "let e = (3) at {x = 0}",
         "assume k > 1, a > 0, a < 1",
         "output u",
         "let e = [2]^2",

@@ -86,7 +86,6 @@ const ADVICE: &[(&str, &str, &str, &str)] = &[
     ("output", "", ";", "outputs stand with ',' between them, as in output x, y"),
     ("output", "NUMBER", "=", "an equation that holds at all times has zero on the left, as in output 0 = x - 1"),
     ("output", "NAME", "=", "an output is an expression: name it by a definition, let {name} = ..., and write output {name}"),
-    ("output", "NAME", ":", "an output is an expression and has no name of its own: name it by a definition, let {name} = ..., and write output {name}"),
     ("output", "", "=", "an output is an expression: name it by a definition, as in let y = x^2, and write output y"),
     ("output", "", "as", "an output is an expression: name it by a definition, as in let y = x^2, and write output y"),
     ("output", "", "[", "a dimension stands behind a colon, as in output x : rad"),
@@ -402,6 +401,14 @@ impl<'t> Place<'t> {
 pub(super) fn advised(expected: Expected, text: &str, begin: usize) -> Expected {
     let Some(place) = Place::new(text, begin, expected.at) else { return expected.hinted(text) };
     let mut known = expected.with_habits_of_numbers(text);
+    // `output y: phi`
+    if place.entry == "output" && place.head.ends_with(':') && known.what.starts_with("a dimension") {
+        let name = last_word(&place.head);
+        let help = format!(
+            "behind the colon stands a dimension, as in output {name} : length; what an output is called is a definition, as in let {name} = ..., and output {name}"
+        );
+        known.help = Some(help);
+    }
     known.help = known.help.or_else(|| place.advice());
     if known.what == NEXT_ENTRY && !place.has_expressions() {
         known.what = "',', or the next entry on a line of its own".to_owned();

@@ -30,7 +30,7 @@ fn prescribed(courses: &[Course; 2]) -> String {
 pub fn advice_text(scene: &Scene, advice: &Advice) -> String {
     let mut lines = vec![scene.title.clone()];
     lines.push(format!(
-        "{} courses of the palms tried; the body is held to the end in {}",
+        "{} motions of the palms tried; the body is held to the end in {}",
         advice.tried, advice.held
     ));
     let touched = |motion: &TriedMotion| {
@@ -47,7 +47,7 @@ pub fn advice_text(scene: &Scene, advice: &Advice) -> String {
         lines.push(format!("as the scene has it: {}", touched(own)));
     }
     let Some(best) = &advice.best else {
-        lines.push("no course was found that holds the body at all".to_owned());
+        lines.push("no motion was found that holds the body at all".to_owned());
         return lines.join("\n");
     };
     lines.push(format!("best: {}", touched(best)));

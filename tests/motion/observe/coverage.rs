@@ -374,7 +374,7 @@ fn a_false_minimum_vetoes_nothing() {
         let off = (0..3).map(|k| (update.estimate[k] - truth[k]).abs() / update.deviations[k]);
         let named = format!("from {:.3} s", update.from);
         let is_named =
-            track.remarks.iter().any(|remark| remark.starts_with(&named) && remark.contains("false minimum"));
+            track.remarks.iter().any(|remark| remark.starts_with(&named) && remark.contains("local minimum"));
         let is_off = off.fold(0.0, f64::max) > 10.0;
         assert!(!is_off || is_named, "{named}: {:?}", track.remarks);
         strays += usize::from(is_off);

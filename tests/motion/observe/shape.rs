@@ -31,7 +31,7 @@ fn reconstructed(experiment: &Experiment) -> Reconstruction {
 }
 
 /// The largest error of the support function over the normals that were touched, and the largest in units of the band's deviation.
-fn worst(experiment: &Experiment, found: &Reconstruction) -> (f64, f64) {
+pub(super) fn worst(experiment: &Experiment, found: &Reconstruction) -> (f64, f64) {
     let (shape, truth) =
         (found.shape.as_ref().expect("a shape"), &experiment.simulation.as_ref().unwrap().shape);
     let angles = (0..720).map(|i| TAU * f64::from(i) / 720.0).filter(|angle| found.coverage.contains(*angle));

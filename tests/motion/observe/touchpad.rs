@@ -29,6 +29,29 @@ fn scene(orientation: f64, rate: f64, palms: &str) -> String {
     )
 }
 
+/// The shape is found from all measurements in each regime, as near and as far round as the book says.
+#[test]
+fn the_shape_over_a_touchpad_is_as_near_as_the_book_says() {
+    let (mut errors, mut parts) = (Vec::new(), Vec::new());
+    for (_, orientation, rate, palms) in REGIMES {
+        let experiment: Experiment = experiment(&scene(orientation, rate, palms));
+        let found = experiment.reconstruct(&super::answers(&experiment), &super::NEVER).expect("two palms");
+        assert!(found.whole.is_some());
+        let (largest, _) = super::shape::worst(&experiment, &found);
+        errors.push(format!("{:.1e}", largest / 0.1));
+        parts.push(format!("{:.0}", 100.0 * found.coverage.fraction()));
+    }
+    let listed = |words: &[String]| format!("{} and {}", words[..3].join(", "), words[3]);
+    let page =
+        include_str!("../../../book/src/observers.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    let sentence = format!(
+        "error is {} of the mean radius, with {} % of the normals touched",
+        listed(&errors),
+        listed(&parts)
+    );
+    assert!(page.contains(&sentence), "{sentence}");
+}
+
 /// In each regime all windows of 20 samples fit, with both radii right to one percent and all within five of their bounds, although a palm and the body come to turn at one rate in many of them.
 #[test]
 fn every_window_of_a_touchpad_is_answered() {

@@ -54,7 +54,7 @@ fn certificate_words(survey: &PoseSurvey) -> String {
         } else {
             String::new()
         };
-        let _ = writeln!(out, "  {:.4} sheets hang together{turn}", one.sheets);
+        let _ = writeln!(out, "  {:.4} sheets are connected{turn}", one.sheets);
     }
     out.push_str(if found.reaches_all() {
         "  proved: from every orientation it can be brought to every other without a jump\n"

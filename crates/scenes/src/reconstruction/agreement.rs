@@ -60,14 +60,14 @@ pub(super) fn contradiction(names: &[&str], answer: &Answer, whole: &WholeMotion
     off.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, found)| found)
 }
 
-/// Windows that fit but contradict the batch estimate of all measurements: each met a false minimum. They are compared with it as with a neighbour.
+/// Windows that fit but contradict the batch estimate of all measurements: each ended in a local minimum. They are compared with it as with a neighbour.
 pub(super) fn strays(names: &[&str], answer: &Answer, whole: &WholeMotion) -> Vec<(usize, Seam, String)> {
     let windows = answer.track.updates.iter().enumerate().filter(|(_, update)| update.is_borne_out());
     let stray = windows.filter_map(|(place, update)| {
         let (off, found) = farthest(names, update, whole)?;
         let own = Seam::of_any_correlation(update.from, [&[0.0], &[0.0]], [&[off], &[1.0]])?;
         let why = format!(
-            "from {:.3} s {} is {off:.0} standard deviations from the batch estimate of all measurements: this window met a false minimum",
+            "from {:.3} s {} is {off:.0} standard deviations from the batch estimate of all measurements: this window ended in a local minimum",
             update.from, found.name
         );
         Some((place, own, why))

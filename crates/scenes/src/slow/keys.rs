@@ -279,7 +279,7 @@ fn checked(keys: Keys, places: &Places, name: &str, text: &str) -> Result<SlowSc
         })?,
         (None, Some(courses)) => courses,
         _ => {
-            let help = "give plan = { margin = 0.15, rounds = 2 }, the plan of figure 3.14, or both courses as prescribed = [..]";
+            let help = "give plan = { margin = 0.15, rounds = 2 }, the plan of figure 3.14, or the motions of both palms as prescribed = [..]";
             return Err(wrong("palms", "it has to be said how the palms move, once".into(), help));
         }
     };

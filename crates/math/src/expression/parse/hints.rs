@@ -35,10 +35,18 @@ const AT_THE_PLACE: [(&str, &str, &str); 73] = [
     ("", "|", "an absolute value is written abs(x), as in abs(omega)"),
     ("", "\\", "write functions and Greek letters without the backslash, as in sin(phi)"),
     ("", "{", "brackets are ( and ); a matrix is written [a, b; c, d]"),
-    ("", "%", "a comment begins with '#', a percentage is written as a fraction, as in 0.5, and there is no remainder of a division"),
+    (
+        "",
+        "%",
+        "a comment begins with '#', a percentage is written as a fraction, as in 0.5, and there is no remainder of a division",
+    ),
     ("", "!=", "unequal is said in a claim or a condition, as in claim a: x != 0"),
     ("", "!", "there is no factorial: write the number itself, as in 6 for 3!"),
-    ("", "@", "'@' stands behind the name of a state alone, as in x@2, its value in the second experiment: leave '@' out"),
+    (
+        "",
+        "@",
+        "'@' stands behind the name of a state alone, as in x@2, its value in the second experiment: leave '@' out",
+    ),
     ("", "//", COMMENT),
     ("", ";", "an entry ends with its line: leave ';' out"),
     ("", "$", "formulas stand without '$'"),
@@ -327,10 +335,16 @@ fn of_a_product(before: &str, rest: &str, what: &str) -> Option<String> {
     let is_factor = left.ends_with(|c: char| is_word(c) || matches!(c, ')' | ']' | '.'))
         && rest.starts_with(|c: char| c.is_alphanumeric() || c == '_' || c == '(');
     let joins = ["operator", "list of arguments"].into_iter().any(|part| what.contains(part));
+    let is_argument = what.contains("list of arguments");
     (is_factor && joins).then(|| {
         let left = &left[left
             .rfind(|c| !is_word(c))
             .map_or(0, |end| end + left[end..].chars().next().map_or(1, char::len_utf8))..];
+        if is_argument && !left.is_empty() && !right.is_empty() && !is_function(left) {
+            return format!(
+                "arguments have ',' between them, as in ({left}, {right}); {PRODUCT}, as in {left}*{right}"
+            );
+        }
         let left = if left.starts_with(|c: char| c.is_ascii_digit()) { "" } else { left };
         product(left, &right)
     })

@@ -103,7 +103,7 @@ fn factor(input: &mut Text<'_>) -> Read<Expr> {
             return Ok(value);
         }
         // `rank = 3 at {x = 0}` would say nothing of the rank at that point
-        if matches!(value.kind, ExprKind::Number(_)) && !is_bracketed {
+        if matches!(value.kind, ExprKind::Number(_)) && !is_bracketed && input.starts_with('{') {
             let help = "'at' belongs to the number before it, which has the same value everywhere: a sum is taken at a point in brackets, as in (x + 3) at {x = 2}; the states of a claim stand behind 'where', as in rank = 3 where x = 0";
             return stop(at, "an expression with names before 'at'", Some(help.to_owned()));
         }
