@@ -105,8 +105,8 @@ pub(crate) struct Rank {
     #[arg(long, value_name = "DIR", requires = "where_it_drops")]
     pub(super) out: Option<PathBuf>,
     /// How many values of each unknown give the same outputs: one (it is globally identifiable or observable), finitely many over the
-    /// complex numbers, or infinitely many. For rational systems, generically, by Groebner bases at random points modulo random primes;
-    /// each number says whether it is proved or computed. States are sampled only where another option asks for it; conditions
+    /// complex numbers, or infinitely many. Generically, by Groebner bases at random points modulo random primes; each number says whether it
+    /// is proved or computed. Where rates or outputs are not rational functions, one value is found and more are undecided. States are sampled only where another option asks for it; conditions
     /// ('--at', '--where') concern those states, and not these numbers.
     #[arg(long, conflicts_with_all = ["shard", "missing"])]
     global: bool,

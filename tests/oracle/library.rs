@@ -5,11 +5,13 @@ use palmistry::certificate::{BoxStanding, Limits, Region, RegionRows};
 use palmistry::drops::{DropAnswer, where_it_drops};
 use palmistry::expression::Symbol;
 use palmistry::number::{Interval, RealNumber};
-use palmistry::sweep::{BranchAnswer, Certainty};
-use palmistry::{Outcome, RankQuestion, System, Verdict, answer_rank, decide_all};
+use palmistry::observability::{Solutions, SolutionsOf};
+use palmistry::sweep::{BranchAnswer, Certainty, SolutionsWanted};
+use palmistry::{Outcome, RankQuestion, System, Verdict, answer_rank, answer_solutions, decide_all};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 /// The words of a verdict that matter here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -229,4 +231,19 @@ impl Certificate {
         }
         self.region.standing(|symbol| values.get(&symbol).copied()) == Some(BoxStanding::Proved)
     }
+}
+
+/// How many values each unknown of a file has, where that is a number.
+pub fn numbers_of_values(text: &str) -> Result<Vec<(String, Option<usize>)>, String> {
+    caught(|| {
+        let mut system = read(text)?;
+        let answer =
+            answer_solutions(&mut system, SolutionsWanted::Values, 3_000_000, &AtomicBool::new(false))
+                .map_err(|why| why.to_string())?;
+        let count = |of_it: &SolutionsOf| match of_it.solutions {
+            Solutions::Finite(count) => Some(count),
+            _ => None,
+        };
+        Ok(answer.solutions.unknowns.iter().map(|of_it| (of_it.name.clone(), count(of_it))).collect())
+    })
 }

@@ -20,6 +20,7 @@ mod dice;
 mod exact_sets;
 mod expression;
 mod findings;
+mod function_values;
 mod identities;
 mod inequalities;
 mod laws;

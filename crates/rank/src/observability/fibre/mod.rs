@@ -28,6 +28,7 @@ mod model;
 mod monomials;
 mod point;
 mod quotient;
+mod rational_form;
 mod round;
 mod second;
 mod slice;
@@ -209,7 +210,8 @@ pub fn solutions_telling(
             tell(&answer);
             count(system, &model, question, &mut answer)
         }
-        Err(why) => Err(why),
+        Err(why) => rational_form::count_in_rational_form(system, question, &mut answer)
+            .map_err(|reason| reason.unwrap_or(why)),
     };
     conclude(&mut answer, &counted, &generic);
     Ok(answer)
