@@ -60,12 +60,12 @@ pub(crate) struct Certify {
     order: Option<u16>,
     /// Keep the open boxes in this file, and go on from it if it is there.
     #[arg(long, value_name = "FILE")]
-    state: Option<PathBuf>,
+    pub(super) state: Option<PathBuf>,
     #[command(flatten)]
     shards: Shards,
     /// With '--merge': write the state of the merged search to a file, which '--state' continues.
     #[arg(long, value_name = "FILE", requires = "merge")]
-    merged: Option<PathBuf>,
+    pub(super) merged: Option<PathBuf>,
     /// The two coordinates of the map; two that matter if none are named.
     #[arg(long, value_name = "X,Y", value_delimiter = ',')]
     map: Vec<String>,
@@ -74,7 +74,7 @@ pub(crate) struct Certify {
     pub(super) out: Option<PathBuf>,
     /// Write the largest proved boxes, each with the rows of its minor, to a file for 'palmistry recheck'.
     #[arg(long, value_name = "FILE")]
-    verdicts: Option<PathBuf>,
+    pub(super) verdicts: Option<PathBuf>,
     /// How many boxes that file holds at most, the largest first.
     #[arg(long, default_value_t = 2000, value_name = "N", requires = "verdicts", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     verdict_boxes: u32,

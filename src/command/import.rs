@@ -152,6 +152,21 @@ impl Import {
         files.print(Form::of(self.json), object, || words, Status::AsExpected)
     }
 
+    /// The files that `--out` makes: of a PEtab problem three side by side, and of anything else the one that it names.
+    pub(super) fn written(&self) -> Vec<PathBuf> {
+        let Some(out) = self.out.as_ref().filter(|out| out.as_os_str() != "-") else { return Vec::new() };
+        let is_problem = match self.from {
+            Some(from) => matches!(from, From::Petab),
+            // a pipe can be read once
+            None if !self.file.is_file() => false,
+            None => file::read_old_text(&self.file, LONGEST_FILE).is_ok_and(|text| is_petab(&text)),
+        };
+        match is_problem {
+            true => ["proof", "csv", "toml"].map(|end| out.with_extension(end)).to_vec(),
+            false => vec![out.clone()],
+        }
+    }
+
     fn question(&self) -> ImportQuestion {
         let list = |names: &[String]| -> Vec<String> {
             names.iter().map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect()

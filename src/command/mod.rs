@@ -33,6 +33,7 @@ mod observe_space;
 mod observe_stream;
 mod observe_studies;
 mod output;
+mod overwritten;
 mod plan;
 mod poses;
 mod prove;
@@ -196,7 +197,10 @@ pub fn run() -> ExitCode {
     if verb.is_a_stream() {
         output::print_in_lines();
     }
-    let result = given_files::refuse(&verb).and_then(|()| threads::prepare()).and_then(|()| verb.run());
+    let result = given_files::refuse(&verb)
+        .and_then(|()| overwritten::refuse(&verb))
+        .and_then(|()| threads::prepare())
+        .and_then(|()| verb.run());
     match result {
         Ok(Status::AsExpected) => ExitCode::SUCCESS,
         Ok(Status::NotAsExpected) => ExitCode::from(1),

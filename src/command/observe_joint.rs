@@ -60,6 +60,8 @@ impl Observe {
             }
             files.announce(&folder.join("index.html"));
         }
-        files.print(Form::of(self.json), json, || joint_text(&observed), Status::of(answer.as_expected()))
+        // a search that was cut off may have found what explains them
+        let status = if observed.interrupted { Status::CutOff } else { Status::of(answer.as_expected()) };
+        files.print(Form::of(self.json), json, || joint_text(&observed), status)
     }
 }

@@ -227,11 +227,18 @@ pub(crate) fn fraction_bar(what: &'static str) -> ProgressBar {
     bar
 }
 
-/// Reads a scene of planar motion. Keys under a name that they had before are read as well, with a note.
+/// Reads a scene of planar motion. Keys under a name that they had before are read as well, with a note; and those that change nothing, since no
+/// method of the scene heeds them, are named.
 pub(crate) fn read_scene(path: &Path) -> miette::Result<Scene> {
     let scene = Scene::read(path)?;
     for (old, new) in scene.old_keys() {
         file::note(&format!("note: {}: the key '{old}' is called '{new}' now", shown_path(path)));
+    }
+    for (key, methods) in scene.unheeded_keys() {
+        let path = shown_path(path);
+        file::note(&format!(
+            "note: {path}: '{key}' changes nothing: it is for {methods}, and 'methods' has none"
+        ));
     }
     Ok(scene)
 }

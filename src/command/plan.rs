@@ -40,7 +40,7 @@ pub(crate) struct Plan {
     seed: Option<u64>,
     /// Write the proof file of the least model here.
     #[arg(long, value_name = "FILE")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// Measure no times, so that the same scene gives the same bytes.
     #[arg(long)]
     no_times: bool,

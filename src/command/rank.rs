@@ -84,7 +84,7 @@ pub(crate) struct Rank {
     digits: Option<u16>,
     /// Write states with their certified ranks, minors and kernels to a file for 'palmistry recheck'.
     #[arg(long, value_name = "FILE")]
-    verdicts: Option<PathBuf>,
+    pub(super) verdicts: Option<PathBuf>,
     /// How many states that file holds at most; they are spread over the sweep, the worst conditioned one is among them.
     #[arg(long, default_value_t = 1000, value_name = "N", requires = "verdicts", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     verdict_states: u64,
@@ -96,7 +96,7 @@ pub(crate) struct Rank {
     /// Write a proof file of the observable part of the system: its states are observable functions; its claims, which are
     /// proved, say that they move as in this file and that the outputs are the same.
     #[arg(long, value_name = "FILE")]
-    reparametrise: Option<PathBuf>,
+    pub(super) reparametrise: Option<PathBuf>,
     /// Instead of sampled states: the sets on which the rank drops, each by its equations, and a proof that elsewhere it
     /// equals the generic rank. The parameters may have any values.
     #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "shard", "merge", "missing"])]
@@ -319,7 +319,7 @@ impl Rank {
             progress: &|done| bar.set_position(done),
         };
         if self.accessible {
-            return Ok(Step::Answered(accessible(system, question, &bar, known)?));
+            return Ok(Step::Answered(self.accessible(system, question, &bar, known)?));
         }
         let nothing_asked = self.samples.is_none() && self.order.is_none() && self.verdicts.is_none();
         let asked = RankPreparation::fingerprint(system, question, nothing_asked);
@@ -365,7 +365,7 @@ impl Rank {
             RankError::Merge(_) => Unusable::report(Code::Saved, why.to_string(), NO_WHOLE).into(),
             _ => Ended::from(why),
         })?;
-        if self.no_times {
+        if !self.is_timed() {
             answer.forget_times();
         }
         if let Some(path) = &self.verdicts {
@@ -435,17 +435,37 @@ impl Rank {
         }
     }
 
+    /// Whether times are printed: neither where they are not wanted, nor of a merge, whose parts ran on several machines.
+    fn is_timed(&self) -> bool {
+        !self.no_times && self.shards.merge.is_none()
+    }
+
     /// How many values of each unknown give the same outputs.
     fn values(&self, system: &mut System, tell: &dyn Fn(GlobalAnswer)) -> Result<GlobalAnswer, Ended> {
         let wanted = if self.functions { SolutionsWanted::Functions } else { SolutionsWanted::Values };
-        Ok(answer_solutions_telling(system, wanted, self.work, &INTERRUPTED, &mut |answer| tell(answer))?)
+        // what an interrupt leaves is printed as the whole answer is, and has no time either
+        let told = |mut answer: GlobalAnswer| {
+            if !self.is_timed() {
+                answer.seconds = f64::NAN;
+            }
+            answer
+        };
+        let mut tell = |answer| tell(told(answer));
+        Ok(told(answer_solutions_telling(system, wanted, self.work, &INTERRUPTED, &mut tell)?))
     }
 
     /// The exact set on which the rank drops.
     fn singular_set(&self, system: &mut System, known: &dyn Fn(SoFar)) -> Result<Answered, Ended> {
-        let mut tell = |answer| known(SoFar::Drops(Box::new(answer)));
+        let told = |mut answer: DropAnswer| {
+            if !self.is_timed() {
+                answer.seconds = f64::NAN;
+            }
+            answer
+        };
+        let mut tell = |answer| known(SoFar::Drops(Box::new(told(answer))));
         let answer = where_it_drops_telling(system, self.seed, &INTERRUPTED, &mut tell)
             .map_err(|why| Unusable::report(Code::Question, why, ""))?;
+        let answer = told(answer);
         let status = if answer.is_exact() { Status::AsExpected } else { Status::CutOff };
         let (mut files, object) = (Files::default(), drops_json(&answer));
         if let Some(folder) = &self.out {
@@ -454,6 +474,31 @@ impl Rank {
             files.announce(&folder.join("index.html"));
         }
         Ok(Answered { files, printed: Printed { object, text: drops_text(&answer) }, status })
+    }
+
+    /// The answer to the dual question.
+    fn accessible(
+        &self,
+        system: &mut System,
+        question: &RankQuestion<'_>,
+        bar: &indicatif::ProgressBar,
+        known: &dyn Fn(SoFar),
+    ) -> Result<Answered, Ended> {
+        let told = |mut answer: AccessibilityAnswer| {
+            if !self.is_timed() {
+                let sampled = answer.branches.iter_mut().filter_map(|branch| branch.sampled.as_mut());
+                sampled.for_each(|sampled| sampled.seconds = f64::NAN);
+            }
+            answer
+        };
+        let mut tell = |answer| known(SoFar::Accessible(Box::new(told(answer))));
+        let answer = answer_accessibility_telling(system, question, &mut tell);
+        bar.finish_and_clear();
+        let answer = told(answer?);
+        let is_whole = answer.is_final() && !answer.interrupted();
+        let status = if is_whole { Status::AsExpected } else { Status::CutOff };
+        let printed = Printed { object: accessibility_json(&answer), text: accessibility_text(&answer) };
+        Ok(Answered { files: Files::default(), printed, status })
     }
 }
 
@@ -492,21 +537,4 @@ impl From<Report> for Ended {
     fn from(why: Report) -> Ended {
         Ended::Unusable(why)
     }
-}
-
-/// The answer to the dual question.
-fn accessible(
-    system: &mut System,
-    question: &RankQuestion<'_>,
-    bar: &indicatif::ProgressBar,
-    known: &dyn Fn(SoFar),
-) -> Result<Answered, Ended> {
-    let mut tell = |answer| known(SoFar::Accessible(Box::new(answer)));
-    let answer = answer_accessibility_telling(system, question, &mut tell);
-    bar.finish_and_clear();
-    let answer = answer?;
-    let is_whole = answer.is_final() && !answer.interrupted();
-    let status = if is_whole { Status::AsExpected } else { Status::CutOff };
-    let printed = Printed { object: accessibility_json(&answer), text: accessibility_text(&answer) };
-    Ok(Answered { files: Files::default(), printed, status })
 }

@@ -49,7 +49,7 @@ pub(crate) struct Reduce {
     signal: Vec<String>,
     /// Write the proof file here; without it, it is printed.
     #[arg(long, value_name = "FILE")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// Print one JSON object with the proof file as 'proof', the conditions as they were solved, what was left out and why, counts before and after, the rank, and
     /// the claims with their verdicts.
     #[arg(long)]

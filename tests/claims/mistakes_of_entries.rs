@@ -409,6 +409,7 @@ fn mistakes_with_another_meaning_are_refused() {
         ("claim a: rank([[x, 0], [0, y]]) = 1", "rows have ';' between them"),
         ("claim a: rank([1 -2; 3 -4]) = 2", "',' or ']'"),
         ("claim a: rank = 3 within 1", "are exact"),
+        ("claim a: 2 = 2 within -0.1", "not negative"),
         ("assume k > 3", "do not meet k > 3"),
         ("assume a > 0, a < 0", "no value of 'a'"),
         ("let codistribution = 2", "a word of the language"),
@@ -428,6 +429,13 @@ fn mistakes_with_another_meaning_are_refused() {
     // what is written with names exists nowhere, and the claims say so
     let named = first_problem(&PENDULUM.replacen("-k*sin(phi)", "phi/(k - k)", 1));
     assert!(named.is_none(), "{named:?}");
+    // a matrix in a product is no number
+    let product = "let M = [x, u; u, x; 1, x]\noutput [1, 0, 0]*M*[1; 0]";
+    let read = first_problem(&format!("{RIGHT}{product}\n"));
+    assert!(read.is_none(), "{read:?}");
+    let text = format!("{RIGHT}claim a: rank = infinity\n");
+    let infinite = System::examine_text("s.proof", &text, Path::new(""), 100).problems;
+    assert_eq!(infinite.len(), 1, "{infinite:?}");
     // and what means what it says is read
     for entry in [
         "claim a: x = 2+-0.1",

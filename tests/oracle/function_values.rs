@@ -31,7 +31,7 @@ impl Tree {
         if depth == 0 || dice.once_in(5) {
             return if dice.once_in(8) { Tree::Whole(dice.between(1, 3)) } else { Tree::Leaf(dice.below(4)) };
         }
-        let mut inner = |dice: &mut Dice| Box::new(Tree::drawn(dice, depth - 1));
+        let inner = |dice: &mut Dice| Box::new(Tree::drawn(dice, depth - 1));
         match dice.below(8) {
             0 | 1 => Tree::Sum(inner(dice), inner(dice)),
             2 | 3 => Tree::Product(inner(dice), inner(dice)),

@@ -1,5 +1,6 @@
 //! The largest likelihood, from many starts.
 
+use super::information::Information;
 use super::likelihood::{Likelihood, SimulatedExperiments};
 use super::simulate::{Exactness, NotFollowed};
 use super::trust::{Scoring, Search};
@@ -8,6 +9,7 @@ use nalgebra::DVector;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Every other search begins at the best of so many draws that can be simulated, the others at the first one: the best draw is often one at which nothing
 /// happens that could be measured, and from there nothing is found.
@@ -26,8 +28,15 @@ const DRAWS: usize = 50;
 /// So many steps are made from the end of the best search, simulated as answers are.
 const LAST_STEPS: u64 = 50;
 
-/// Two ends are one optimum whose logarithms of the likelihood differ by less than this.
+/// Two ends are one optimum whose logarithms of the likelihood differ by less than this, unless they lie apart.
 const SAME: f64 = 0.1;
+
+/// An end is as likely as the best one where the logarithm of its likelihood is lower by no more than this: half of what a chi-square with one degree of
+/// freedom exceeds in 5 % of cases.
+const AS_LIKELY: f64 = 1.92;
+
+/// Ends that are as likely lie apart where a parameter differs by more than this many standard deviations: within its interval of 95 % it would by two.
+const APART: f64 = 5.0;
 
 /// How a search ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,16 +87,51 @@ impl JointFit {
         &self.searches[self.best]
     }
 
-    /// How many searches from random starts came to the best end, and how many from near it.
-    pub fn arrived(&self) -> [usize; 2] {
+    /// How many searches from random starts came to the best end, and how many others; `apart` are the searches that ended elsewhere.
+    pub fn arrived(&self, apart: &[usize]) -> [usize; 2] {
         let least = self.best().objective;
-        let came = |list: &[SearchEnd]| list.iter().filter(|one| one.objective <= least + SAME).count();
-        let (random, near) = self.searches.split_at(self.random);
-        [came(random), came(near)]
+        let came = |places: Range<usize>| {
+            let is_there =
+                |place: &usize| self.searches[*place].objective <= least + SAME && !apart.contains(place);
+            places.filter(is_there).count()
+        };
+        [came(0..self.random), came(self.random..self.searches.len())]
+    }
+
+    /// The searches that ended as likely as the best one and elsewhere: a parameter that the information determines has another value there. Then
+    /// neither its standard deviation nor an interval around the best value holds all values that explain the measurements.
+    pub fn apart(&self, information: &Information) -> Vec<usize> {
+        let best = self.best();
+        let is_apart = |place: &usize| {
+            let one = &self.searches[*place];
+            let differs = (0..best.found.len()).any(|parameter| self.differs(information, one, parameter));
+            one.objective <= best.objective + AS_LIKELY && differs
+        };
+        (0..self.searches.len()).filter(is_apart).collect()
+    }
+
+    /// The other values of a parameter at such ends, on its scale, in order; those within a deviation are one.
+    pub fn other_values(&self, information: &Information, apart: &[usize], parameter: usize) -> Vec<f64> {
+        let of_it = apart.iter().map(|place| &self.searches[*place]);
+        let mut values: Vec<f64> = of_it
+            .filter(|one| self.differs(information, one, parameter))
+            .map(|one| one.found[parameter])
+            .collect();
+        values.sort_by(f64::total_cmp);
+        let near = APART * information.deviations[parameter].unwrap_or(0.0);
+        values.dedup_by(|next, before| *next - *before <= near);
+        values
+    }
+
+    fn differs(&self, information: &Information, one: &SearchEnd, parameter: usize) -> bool {
+        let deviation = information.deviations.get(parameter).copied().flatten();
+        let off = one.found.get(parameter).map(|value| (value - self.best().found[parameter]).abs());
+        off.zip(deviation).is_some_and(|(off, deviation)| off > APART * deviation)
     }
 }
 
 /// Searches from random starts within the bounds, evenly on the scales of the parameters; one start with one seed is the same on any number of threads.
+/// Where the nominal values explain more than any of them comes to, a search begins there too.
 ///
 /// # Errors
 /// Why none of the starts could be simulated.
@@ -108,6 +152,13 @@ pub fn fit(
         found
     };
     let mut searches: Vec<SearchEnd> = (0..starts).into_par_iter().map(one).collect();
+    if let Some(place) = likelihood.problem().nominal()
+        && is_within(likelihood, &place)
+        && let Ok(here) = likelihood.at(&place, Exactness::Search, &|| interrupted())
+        && least(&searches).is_none_or(|best| here.objective < best.objective - SAME)
+    {
+        searches.push(search(likelihood, &place, here, &[], (steps, Exactness::Search), interrupted));
+    }
     for round in 0..ROUNDS {
         let Some(best) = least(&searches).filter(|_| !interrupted()) else { break };
         let (objective, found) = (best.objective, best.found.clone());
@@ -124,6 +175,14 @@ pub fn fit(
         }
     }
     best_of(likelihood, (searches, starts), interrupted)
+}
+
+/// Whether a place lies within the bounds.
+fn is_within(likelihood: &Likelihood, place: &[f64]) -> bool {
+    likelihood.problem().parameters.iter().zip(place).all(|(one, value)| {
+        let [low, high] = one.scaled_bounds();
+        (low..=high).contains(value)
+    })
 }
 
 /// The search that came farthest.
@@ -167,34 +226,50 @@ fn from_near(
     ended(Vec::new(), StartEnd::NoStart(why))
 }
 
-/// The best of some searches, followed to its end.
+/// The best of some searches, followed to its end. One whose end cannot be simulated as exactly as answers are is none.
 fn best_of(
     likelihood: &Likelihood,
     (mut searches, random): (Vec<SearchEnd>, usize),
     interrupted: &(dyn Fn() -> bool + Sync),
 ) -> Result<JointFit, String> {
-    let Some(place) =
-        least(&searches).and_then(|best| searches.iter().position(|one| one.objective == best.objective))
-    else {
-        let why = searches.first().map(|one| match &one.end {
-            StartEnd::NoStart(why) => why.clone(),
-            _ => "interrupted".to_owned(),
-        });
-        return Err(why.unwrap_or_else(|| "no start was asked for".to_owned()));
-    };
-    let best = &mut searches[place];
     let simulate =
         |found: &[f64]| likelihood.at(found, Exactness::Answer, &|| false).map_err(|why| why.to_string());
-    let here = simulate(&best.found)?;
-    let last = search(likelihood, &best.found, here, &[], (LAST_STEPS, Exactness::Answer), interrupted);
-    best.steps += last.steps;
-    best.objective = last.objective;
-    best.found = last.found;
-    if last.end != StartEnd::Interrupted {
-        best.end = last.end;
+    let mut order: Vec<usize> =
+        (0..searches.len()).filter(|place| searches[*place].objective.is_finite()).collect();
+    order.sort_by(|a, b| searches[*a].objective.total_cmp(&searches[*b].objective));
+    let mut why_not = None;
+    for place in order {
+        let best = &searches[place];
+        let here = match simulate(&best.found) {
+            Ok(here) => here,
+            Err(why) => {
+                why_not.get_or_insert(why);
+                continue;
+            }
+        };
+        let last = search(likelihood, &best.found, here, &[], (LAST_STEPS, Exactness::Answer), interrupted);
+        let simulated = match simulate(&last.found) {
+            Ok(simulated) => simulated,
+            Err(why) => {
+                why_not.get_or_insert(why);
+                continue;
+            }
+        };
+        let best = &mut searches[place];
+        best.steps += last.steps;
+        best.objective = last.objective;
+        best.found = last.found;
+        if last.end != StartEnd::Interrupted {
+            best.end = last.end;
+        }
+        return Ok(JointFit { searches, random, best: place, simulated });
     }
-    let simulated = simulate(&best.found)?;
-    Ok(JointFit { searches, random, best: place, simulated })
+    Err(why_not.unwrap_or_else(|| match searches.first().map(|one| &one.end) {
+        Some(StartEnd::NoStart(why)) => why.clone(),
+        Some(StartEnd::Interrupted) => "interrupted".to_owned(),
+        Some(_) => "at no start is the likelihood a finite number".to_owned(),
+        None => "no start was asked for".to_owned(),
+    }))
 }
 
 fn from_draws(

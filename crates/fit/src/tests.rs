@@ -322,7 +322,43 @@ fn the_truth_is_found_on_any_number_of_threads() {
     for (found, known) in one.best().found.iter().zip([0.8f64, 0.05, 2.0, 5.0]) {
         near(*found, known.log10(), 1e-6);
     }
-    assert!(one.simulated.chi_square < 1e-8 && one.arrived()[0] >= 3, "{:?}", one.arrived());
+    assert!(one.simulated.chi_square < 1e-8 && one.arrived(&[])[0] >= 3, "{:?}", one.arrived(&[]));
+}
+
+/// What flows in and what flows out of a vessel may be exchanged with another scale: both ends are found, neither counts as the other's arrival, and
+/// all three parameters have two values.
+#[test]
+fn ends_that_explain_as_much_lie_apart() {
+    let (k, q, s) = (1.0, 0.3, 2.0);
+    let rows: Vec<(f64, f64)> = (1..13)
+        .map(|i| 0.7 * f64::from(i))
+        .map(|t| (t, s * k / (q - k) * ((-k * t).exp() - (-q * t).exp())))
+        .collect();
+    let rows: Vec<Row<'_>> = rows.iter().map(|(t, value)| (0, "s*y", *t, *value, "0.01")).collect();
+    let made = Made {
+        text: "system \"vessels\"\nstate x, y\nparam k, q, s unknown\ndrift f\n  x' = -k*x\n  y' = k*x - q*y\noutput y\n",
+        parameters: &[("k", 1e-2, 1e1, LOG10), ("q", 1e-2, 1e1, LOG10), ("s", 1e-1, 1e2, LOG10)],
+        experiments: &[(&[], &[Some("1"), Some("0")])],
+        rows: &rows,
+        clock: None,
+    };
+    let found = fit(&made.likelihood(), 12, 200, 1, &NEVER, &|| ()).unwrap();
+    let information = Information::of(&found.simulated, &[false; 3]);
+    let apart = found.apart(&information);
+    assert!(!apart.is_empty());
+    let values = [(k, q), (q, k), (s, s * k / q)];
+    for (place, (one, other)) in values.into_iter().enumerate() {
+        let mut all = found.other_values(&information, &apart, place);
+        all.push(found.best().found[place]);
+        all.sort_by(f64::total_cmp);
+        let mut known = [f64::log10(one), f64::log10(other)];
+        known.sort_by(f64::total_cmp);
+        assert_eq!(all.len(), 2, "{all:?}");
+        all.iter().zip(known).for_each(|(found, known)| near(*found, known, 1e-4));
+    }
+    let arrived = found.arrived(&apart);
+    let elsewhere = found.searches.len() - arrived[0] - arrived[1];
+    assert!(arrived[0] >= 1 && elsewhere >= apart.len(), "{arrived:?}");
 }
 
 /// A straight line: deviations and profiles are those of the normal equations.

@@ -2,9 +2,11 @@
 //! that is more than a few letters, or has cases itself, becomes a definition first. What is written then grows as the file does: nested cases
 //! would double with every step.
 
-use super::expression::{ForeignExpr, ForeignKind};
+use super::expression::{ForeignExpr, ForeignKind, ForeignOrder};
 use super::model::{ForeignConstant, ForeignModel, ForeignRate};
 use super::print::{Written, same, without_case};
+use super::reduced::Flags;
+use super::thin::ThinSets;
 use dashu::base::BitTest;
 use dashu::rational::RBig;
 use palmistry_io::foreign::Budget;
@@ -12,7 +14,7 @@ use palmistry_lang::{Code, Problem};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A value with more parts than these gets a name before it is written twice.
-const SHORT: usize = 40;
+pub(super) const SHORT: usize = 40;
 
 /// Values of more bits are not kept: they are no flags.
 const LONGEST: usize = 1 << 14;
@@ -47,6 +49,10 @@ struct Writing<'b> {
     partial: BTreeSet<String>,
     /// What was decided by the values of the file.
     remarks: Vec<String>,
+    /// Where sides can be equal on more than a thin set, and what short definitions with cases are: asked only where there are cases.
+    thin: ThinSets,
+    flags: Flags,
+    has_cases: bool,
 }
 
 /// Writes out all cases of a model.
@@ -57,13 +63,18 @@ pub(super) fn written_out(model: &ForeignModel, budget: &Budget) -> Result<Uncas
     let taken = model.all_names().into_iter().collect();
     let given = |constant: &ForeignConstant| Some((constant.name.clone(), constant.value.clone()?));
     let values = model.constants.iter().filter(|one| !model.varied.contains(&one.name)).filter_map(given);
+    let values: BTreeMap<String, RBig> = values.collect();
+    let doubles = values.iter().map(|(name, value)| (name.clone(), value.to_f64().value()));
     let mut writing = Writing {
         budget,
         taken,
         count: 0,
         above: Vec::new(),
         has_sign: false,
-        values: values.collect(),
+        thin: ThinSets::new(doubles),
+        flags: Flags::default(),
+        has_cases: has_cases(model),
+        values,
         partial: BTreeSet::new(),
         remarks: Vec::new(),
     };
@@ -72,9 +83,13 @@ pub(super) fn written_out(model: &ForeignModel, budget: &Budget) -> Result<Uncas
         let part = writing.part(value)?;
         writing.has_sign |= part.has_sign;
         writing.note(name, &part);
-        let value = part.value;
+        let own = part.value;
         found.definitions.append(&mut writing.above);
-        found.definitions.push((name.clone(), value));
+        found.definitions.push((name.clone(), own));
+        if writing.has_cases {
+            writing.thin.define(name, value);
+            writing.flags.define(name, value);
+        }
     }
     for state in &model.states {
         let rate = writing.whole(&state.rate)?;
@@ -89,6 +104,18 @@ pub(super) fn written_out(model: &ForeignModel, budget: &Budget) -> Result<Uncas
     found.definitions.append(&mut writing.above);
     found.remarks.append(&mut writing.remarks);
     Ok(Uncased { model: found, has_sign: writing.has_sign })
+}
+
+/// Whether anything of a model is written by `sign`, or may be.
+fn has_cases(model: &ForeignModel) -> bool {
+    fn any(value: &ForeignExpr) -> bool {
+        matches!(value.kind, ForeignKind::Case { .. } | ForeignKind::Call("sign", _))
+            || value.parts().into_iter().any(any)
+    }
+    model.definitions.iter().any(|(_, value)| any(value))
+        || model.states.iter().any(|state| any(&state.rate))
+        || model.outputs.iter().any(|output| any(&output.value))
+        || model.initial_values.iter().any(|(_, value)| value.as_ref().is_some_and(any))
 }
 
 impl Writing<'_> {
@@ -123,6 +150,9 @@ impl Writing<'_> {
             // whatever they are
             return Some(order.of_equals(values));
         }
+        if let (Some(left), Some(right)) = (sides.0.as_number(), sides.1.as_number()) {
+            return Some(if order.holds(left, right) { &values.0 } else { &values.1 });
+        }
         if value(&sides.0)? != value(&sides.1)? {
             return None;
         }
@@ -151,6 +181,9 @@ impl Writing<'_> {
         if let ForeignKind::Name(name) = &of.kind {
             let is_total = !self.partial.contains(name);
             return Ok(Part { value: of.clone(), size: 1, is_total, has_sign: false });
+        }
+        if let Some(plain) = self.without_equal_sides(of)? {
+            return self.part(&plain);
         }
         let mut parts = Vec::new();
         for inner in of.parts() {
@@ -191,6 +224,62 @@ impl Writing<'_> {
         let size = value.size();
         self.budget.nodes(size).map_err(|spent| super::too_much(&of.span, spent))?;
         Ok(Part { value, size, is_total, has_sign: true })
+    }
+
+    /// What is the same as an expression that `sign` would have to say, where its sides can be equal on more than a thin set: `sign` has no
+    /// value there. None where it can be said as it is.
+    ///
+    /// # Errors
+    /// Such an expression that is nothing simpler.
+    fn without_equal_sides(&mut self, of: &ForeignExpr) -> Result<Option<ForeignExpr>, Problem> {
+        let refused = || {
+            let message = "the two sides of a case can be equal on more than a thin set, and it cannot be written by sign there";
+            Problem::new(Code::Foreign, &of.span, message, "this case").help(
+                "compare what stands within max, min, abs or another case itself: x > 1, and not max(x - 1, 0) > 0",
+            )
+        };
+        match &of.kind {
+            ForeignKind::Call("sign", list) if list.len() == 1 => {
+                if !self.thin.may_be_zero(&list[0]) {
+                    return Ok(None);
+                }
+                let (zero, one) = (ForeignExpr::integer(0, &of.span), ForeignExpr::integer(1, &of.span));
+                let case = |order, then: &ForeignExpr, otherwise: ForeignExpr| {
+                    let sides = Box::new((list[0].clone(), zero.clone()));
+                    let values = Box::new((then.clone(), otherwise));
+                    ForeignExpr::new(ForeignKind::Case { sides, order, values }, &of.span)
+                };
+                let below = case(ForeignOrder::Less, &one.clone().negative(), zero.clone());
+                Ok(Some(case(ForeignOrder::Greater, &one, below)))
+            }
+            ForeignKind::Case { sides, order, values } => {
+                if let Written::Once(_) = without_case(of, sides, *order, values) {
+                    return Ok(None);
+                }
+                if !self.thin.may_be_equal(&sides.0, &sides.1) {
+                    return Ok(None);
+                }
+                // both values may stand several times in what is made of it
+                let mut short = values.as_ref().clone();
+                for value in [&mut short.0, &mut short.1] {
+                    if value.size() > SHORT {
+                        let part = self.part(value)?;
+                        let name = self.name();
+                        self.has_sign |= part.has_sign;
+                        self.note(&name, &part);
+                        self.thin.define(&name, value);
+                        *value = ForeignExpr::name(name.as_str(), &value.span);
+                        self.above.push((name, part.value));
+                    }
+                }
+                let case = ForeignKind::Case { sides: sides.clone(), order: *order, values: Box::new(short) };
+                let case = ForeignExpr::new(case, &of.span);
+                let plain = self.flags.reduced(&case).ok_or_else(refused)?;
+                self.budget.nodes(plain.size()).map_err(|spent| super::too_much(&of.span, spent))?;
+                Ok(Some(plain))
+            }
+            _ => Ok(None),
+        }
     }
 
     /// A name that nothing has.

@@ -34,6 +34,26 @@ pub enum ForeignOrder {
 }
 
 impl ForeignOrder {
+    /// Whether two numbers are so.
+    pub(super) fn holds(self, left: &RBig, right: &RBig) -> bool {
+        match self {
+            ForeignOrder::Less => left < right,
+            ForeignOrder::AtMost => left <= right,
+            ForeignOrder::Greater => left > right,
+            ForeignOrder::AtLeast => left >= right,
+        }
+    }
+
+    /// How the second of two is compared with the first.
+    pub(super) fn turned(self) -> ForeignOrder {
+        match self {
+            ForeignOrder::Less => ForeignOrder::Greater,
+            ForeignOrder::AtMost => ForeignOrder::AtLeast,
+            ForeignOrder::Greater => ForeignOrder::Less,
+            ForeignOrder::AtLeast => ForeignOrder::AtMost,
+        }
+    }
+
     /// Which of two values a case has whose sides are equal.
     pub(super) fn of_equals(self, values: &(ForeignExpr, ForeignExpr)) -> &ForeignExpr {
         match self {
@@ -318,7 +338,7 @@ impl ForeignExpr {
     }
 }
 
-fn function_value(name: &str, values: &[f64]) -> Option<f64> {
+pub(super) fn function_value(name: &str, values: &[f64]) -> Option<f64> {
     let x = *values.first()?;
     Some(match name {
         "sqrt" => x.sqrt(),

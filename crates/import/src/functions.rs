@@ -147,6 +147,13 @@ pub(super) fn takes_one(name: &str) -> bool {
     }
 }
 
+/// Whether a name by itself is that of a function that everybody knows: a plain `exp` is no parameter.
+pub(super) fn names_a_function(name: &str) -> bool {
+    const OF_TWO: [&str; 12] =
+        ["min", "max", "Min", "Max", "fmin", "fmax", "atan2", "arctan2", "hypot", "pow", "Pow", "Piecewise"];
+    takes_one(name) || OF_TWO.contains(&name)
+}
+
 /// A function of another program, by its name in whichever case, of its arguments.
 pub(super) fn call(name: &str, mut arguments: Vec<ForeignExpr>, span: &Span) -> Result<ForeignExpr, Problem> {
     let small = name.to_ascii_lowercase();

@@ -19,9 +19,11 @@ mod model;
 mod names;
 mod petab;
 mod print;
+mod reduced;
 mod sbml;
 mod script;
 mod scripts;
+mod thin;
 mod toolkit;
 mod write;
 
@@ -260,12 +262,44 @@ fn read(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedMod
         let (line, _) = why.line_and_column();
         let excerpt = written.text.lines().nth(line.saturating_sub(1)).unwrap_or_default().trim();
         let message = format!("what was made of it is no proof file: {}", why.message);
-        let problem = Problem::new(Code::Foreign, &(0..text.len().min(1)), message, "the file");
+        let place = place_of_line(&model, &written, line).unwrap_or(0..text.len().min(1));
+        let label = if place.len() > 1 { "this" } else { "the file" };
+        let problem = Problem::new(Code::Foreign, &place, message, label);
         let help = why.help.as_deref().map_or(String::new(), |help| format!("{help}; "));
         return Err(located(problem.help(format!("{help}it reads: {excerpt}"))));
     }
     let text = palmistry_lang::format_text("import.proof", &written.text).unwrap_or(written.text);
     Ok(ImportedModel { format, text, model, renamed: written.renamed })
+}
+
+/// Where the foreign file has what stands in a line of what was written: the rate, the definition or the output that the line is, or goes on with.
+fn place_of_line(model: &ForeignModel, written: &write::ProofText, line: usize) -> Option<expression::Span> {
+    let foreign = |ours: &str| {
+        let renamed = written.renamed.iter().find(|(_, own)| own == ours);
+        renamed.map_or_else(|| ours.to_owned(), |(foreign, _)| foreign.clone())
+    };
+    let lines: Vec<&str> = written.text.lines().take(line).collect();
+    let head = lines.iter().rev().find(|line| line.contains(" = ") || line.starts_with("output "))?;
+    let (left, _) = head.split_once(" = ").unwrap_or((head, ""));
+    let left = left.trim();
+    let place = match left.strip_prefix("let ") {
+        Some(name) => {
+            let name = foreign(name.trim());
+            let definition = model.definitions.iter().find(|(own, _)| *own == name).map(|(_, value)| value);
+            let output = || model.outputs.iter().find(|output| output.name.as_ref() == Some(&name));
+            definition.or_else(|| output().map(|output| &output.value))?.span.clone()
+        }
+        None if left.starts_with("output ") => match model.outputs.as_slice() {
+            [only] => only.value.span.clone(),
+            _ => return None,
+        },
+        None => {
+            let name = foreign(left.trim_end_matches(['\'', '+', ' ']));
+            let state = model.states.iter().find(|state| state.name == name)?;
+            if state.rate.span.is_empty() { state.span.clone() } else { state.rate.span.clone() }
+        }
+    };
+    (!place.is_empty()).then_some(place)
 }
 
 /// What the first comments of a file say, in one line that is not too long: the first ones that stand together and are more than a

@@ -174,8 +174,8 @@ fn scripts() {
         (
             "a.m",
             "function dx = rhs(t, x)\nA = [1 2; 3 4];\ndx = A*x;\nend\n",
-            "'x' is used as a whole",
-            (1, 1),
+            "'x' is used as a whole beside a matrix",
+            (3, 6),
             "x(1)",
         ),
         (

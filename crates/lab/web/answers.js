@@ -220,7 +220,7 @@ export class Answers {
                 if (fields_missing) parts.push(element("p", {}, `${fields_missing} more, of which no field of low degree was found.`));
             }
             if (functions.length || functions_missing) {
-                parts.push(element("h2", {}, "Identifiable combinations"));
+                parts.push(element("h2", {}, "Identifiable combinations (generically)"));
                 for (const found of functions) parts.push(element("p", { class: "formula wide" }, formula(found.mathml, found.text)));
                 if (functions_missing) parts.push(element("p", {}, `${functions_missing} more, which were not found in low degree.`));
             }

@@ -10,6 +10,9 @@ use palmistry_math::expression::Symbol;
 use palmistry_math::expression::syntax::{Equation, Expr, ExprKind, Relation};
 use std::collections::BTreeMap;
 
+/// So many conditions are written under claims at most: each assumption stands under each claim.
+const MOST_CONDITIONS: usize = 400_000;
+
 impl System {
     /// Takes inequalities down, once it is known that they can be read.
     pub(super) fn assume(&mut self, relations: &[Equation]) -> Result<(), Problem> {
@@ -30,6 +33,9 @@ impl System {
 
     /// Makes each claim one about the states at which the assumptions hold. How many solutions there are is asked of all values.
     pub(super) fn claim_what_is_assumed(&mut self) {
+        if self.claims.len().saturating_mul(self.assumed.len()) > MOST_CONDITIONS {
+            return;
+        }
         let assumed = std::mem::take(&mut self.assumed);
         for claim in &mut self.claims {
             let statements: Vec<&mut Statement> = match &mut claim.body {
@@ -55,6 +61,16 @@ impl System {
             .map(|(symbol, value)| (symbol, self.graph.rational(value)))
             .collect();
         let (mut bounds, mut found) = (BTreeMap::<Symbol, Bounds>::new(), Vec::new());
+        if let Some(last) = self.assumed.last()
+            && self.claims.len().saturating_mul(self.assumed.len()) > MOST_CONDITIONS
+        {
+            let (assumed, claims) = (self.assumed.len(), self.claims.len());
+            let message = format!("{assumed} assumptions under each of {claims} claims are too many");
+            let problem = Problem::new(Code::Assumption, &last.span, message, "the last one");
+            found
+                .push(problem.help("put claims into several files, or assume what they need behind 'where'"));
+            return found;
+        }
         for one in self.assumed.clone() {
             let sides = [&one.left, &one.right].map(|side| self.apart(|system| system.scalar(side)));
             let [Ok((left, _)), Ok((right, _))] = sides else { continue };

@@ -100,7 +100,8 @@ impl System {
             numbers.push(expr.clone());
         }
         for number in numbers {
-            let (_, guards) = self.elaborate_guarded(&number)?;
+            // what is wrong with it besides is said where the whole is read
+            let Ok((_, guards)) = self.elaborate_guarded(&number) else { continue };
             let Some(unmet) = guards.iter().find(|guard| guard.constant(&self.graph) == Some(false)) else {
                 continue;
             };
@@ -149,7 +150,7 @@ impl System {
 }
 
 /// Whether an expression has names. The largest parts of it that have none are put into `numbers`, but for the expression
-/// itself and for numbers as they are written; those of a product are one part, so that `x/0` has `1/0`.
+/// itself and for numbers as they are written; of `x/0` it is `1/0`.
 fn numbers_in(expr: &Expr, numbers: &mut Vec<Expr>) -> bool {
     let mut nameless = Vec::new();
     let mut has_names = false;
@@ -176,13 +177,15 @@ fn numbers_in(expr: &Expr, numbers: &mut Vec<Expr>) -> bool {
     if !has_names {
         return false;
     }
-    if let ExprKind::Product(_) = &expr.kind {
-        let one = Expr { kind: ExprKind::Number(RBig::ONE), span: expr.span.clone() };
-        nameless.insert(0, (false, one));
-        numbers.push(Expr { kind: ExprKind::Product(nameless), span: expr.span.clone() });
-    } else {
-        let is_written = |one: &Expr| matches!(one.kind, ExprKind::Number(_));
-        numbers.extend(nameless.into_iter().map(|(_, one)| one).filter(|one| !is_written(one)));
+    for (divides, part) in nameless {
+        let is_written = matches!(part.kind, ExprKind::Number(_));
+        if divides {
+            let span = part.span.clone();
+            let one = Expr { kind: ExprKind::Number(RBig::ONE), span: span.clone() };
+            numbers.push(Expr { kind: ExprKind::Product(vec![(false, one), (true, part)]), span });
+        } else if !is_written {
+            numbers.push(part);
+        }
     }
     true
 }

@@ -6,6 +6,7 @@ use super::foreign::call_of;
 use super::matrices::transpose;
 use super::model::{Assignment, Kind, Matrix, Role, System, Value};
 use super::problems::Cause;
+use super::read::is_a_word;
 use dashu::rational::RBig;
 use palmistry_math::expression::syntax::{Expr, ExprKind, Name, Span};
 use palmistry_math::expression::{Need, NodeId, Symbol, gradient};
@@ -284,6 +285,15 @@ impl System {
             (None, Wanted::Field) => format!("the fields above are: {}", fields.join(", ")),
             (None, Wanted::State) => format!("declare it above: state {name}"),
             (None, Wanted::Symbol) => format!("declare it above: 'state {name}' or 'param {name}'"),
+            (None, Wanted::Name) if is_a_word(name) => {
+                format!("'{name}' is a word of the language, and has no value of its own")
+            }
+            (None, Wanted::Name) if name.contains('.') => {
+                format!(
+                    "a name with a dot is one of an imported file, as in use {} = \"other.proof\"",
+                    name.split('.').next().unwrap_or_default()
+                )
+            }
             (None, Wanted::Name) => format!(
                 "declare it: 'state {name}', 'param {name}', 'let {name} = ...', or 'known {name}(t)' for a signal"
             ),

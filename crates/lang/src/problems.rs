@@ -324,7 +324,7 @@ impl System {
             ExprKind::Number(_) | ExprKind::Indexed(_) => {}
             ExprKind::Name(name) => {
                 let is_known = self.find_symbol(name).is_some() || self.definition(name).is_some();
-                if !is_known && !["pi", "rank"].contains(&name.as_str()) {
+                if !is_known && !["pi", "rank", "infinity"].contains(&name.as_str()) {
                     found.push(self.unknown(name, &expr.span, Wanted::Name));
                 }
             }

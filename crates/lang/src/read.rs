@@ -315,7 +315,7 @@ impl System {
         let taken = declared.is_some_and(|info| info.kind != Kind::Imported)
             || self.definitions.contains_key(&name.text)
             || ["pi", "rank", "others"].contains(&name.text.as_str());
-        if UNDECLARABLE.iter().chain(&TAKEN).any(|word| *word == name.text) {
+        if is_a_word(&name.text) {
             let message = format!("'{}' is a word of the language", name.text);
             let problem = Problem::new(Code::Name, &name.span, message, "choose another name");
             return Err(match name.text.as_str() {
@@ -408,6 +408,11 @@ impl System {
 /// Names that would be taken for statements.
 const TAKEN: [&str; 6] =
     ["observable", "unobservable", "identifiable", "unidentifiable", "solutions", "codistribution"];
+
+/// Whether a word has a meaning of its own where a name could stand, so that nothing can be declared under it.
+pub(super) fn is_a_word(name: &str) -> bool {
+    UNDECLARABLE.iter().chain(&TAKEN).any(|word| *word == name)
+}
 
 /// What comes below a codistribution that does not know of it.
 fn late(what: &str, span: &Span) -> Problem {

@@ -72,14 +72,14 @@ impl MovingWindow {
 
     /// How well a state explains a window.
     fn fit(&self, task: &Task<'_>, window: &Window<'_>, expansion: &WindowExpansion) -> Fit {
-        let differences = &expansion.counted;
+        let (differences, slopes) = (&expansion.counted, expansion.counted_slopes());
         let read = || window.measured.iter().flatten().filter(|value| !value.is_nan());
         let not_counted = window.not_counted();
         let square: f64 = read().map(|value| value * value).sum();
         // an implicit output is not measured: its size is what the unknowns, at their sizes, make of its terms
         let sizes = Self::sizes(task, window);
         let term = |i: usize| -> f64 {
-            expansion.slopes.row(i).iter().zip(&sizes).map(|(slope, size)| (slope * size).powi(2)).sum()
+            slopes.row(i).iter().zip(&sizes).map(|(slope, size)| (slope * size).powi(2)).sum()
         };
         let outputs = task.full.outputs.len().max(1);
         let implicit = (0..differences.len()).filter(|i| task.full.is_implicit(i % outputs));
@@ -91,7 +91,7 @@ impl MovingWindow {
         let rms_residual = Residuals {
             differences,
             unmeasured: &not_counted,
-            slopes: Some(&expansion.slopes),
+            slopes: Some(slopes),
             loss: window.loss.0,
             outputs: task.full.outputs.len(),
             relations: window.relations(),
@@ -105,7 +105,7 @@ impl MovingWindow {
             Some(weights) => {
                 let (computed, degrees) = (rms_residual.computed(), rms_residual.degrees());
                 let judged = (rms_residual.loss, rms_residual.alarm);
-                weights.fit(differences, &expansion.slopes, computed, degrees, judged)
+                weights.fit(differences, slopes, computed, degrees, judged)
             }
             None => rms_residual.fit(task.noise),
         }
@@ -230,3 +230,6 @@ fn lost(error: argmin::core::Error, time: f64) -> UpdateEnd {
     let why = error.to_string();
     UpdateEnd::Lost(error.downcast::<super::Lost>().unwrap_or(super::Lost { time, why }))
 }
+
+#[cfg(test)]
+mod tests;

@@ -48,21 +48,25 @@ pub fn cramer_rao(slopes: &DMatrix<f64>, sigma: f64, sizes: &[f64]) -> CramerRao
         return blind();
     }
     let unobserved: Vec<usize> = (0..p).filter(|k| values[*k] <= UNSEEN * largest).collect();
-    let entry = |i: usize, j: usize| -> f64 {
-        let terms = (0..p).map(|k| directions[(k, i)] * directions[(k, j)] / (values[k] * values[k]));
-        sigma * sigma * sizes[i] * sizes[j] * terms.sum::<f64>()
-    };
+    // sizes and singular values may be beyond the root of the largest double: their squares are in no formula
+    let part = |k: usize, i: usize| sigma * directions[(k, i)] * (sizes[i] / values[k]);
+    let entry = |i: usize, j: usize| -> f64 { (0..p).map(|k| part(k, i) * part(k, j)).sum::<f64>() };
     let deviation = |i: usize| {
         // an unknown without a part in the unobservable directions is observable all the same
         let hidden = unobserved.iter().any(|k| directions[(*k, i)].abs() > 1e-6);
         let seen = (0..p).filter(|k| !unobserved.contains(k));
-        let square: f64 = seen.map(|k| (directions[(k, i)] / values[k]).powi(2)).sum();
-        if hidden { f64::INFINITY } else { sigma * sizes[i] * square.sqrt() }
+        let deviation = seen.map(|k| part(k, i)).fold(0.0, f64::hypot);
+        // a deviation that no double holds is not known, and neither zero nor a number
+        let is_known = deviation.is_finite() && (deviation > 0.0 || sigma <= 0.0);
+        if hidden || !is_known { f64::INFINITY } else { deviation }
     };
     CramerRaoBound {
         deviations: (0..p).map(deviation).collect(),
         condition: if smallest > 0.0 { largest / smallest } else { f64::INFINITY },
-        covariance: unobserved.is_empty().then(|| DMatrix::from_fn(p, p, entry)),
+        covariance: unobserved
+            .is_empty()
+            .then(|| DMatrix::from_fn(p, p, entry))
+            .filter(|own| own.iter().all(|value| value.is_finite())),
         weakest,
     }
 }
@@ -79,6 +83,23 @@ mod tests {
         assert!((bound.deviations[0] - 0.1 / 3f64.sqrt()).abs() < 1e-15);
         assert!((bound.deviations[1] - 0.1 / 2f64.sqrt()).abs() < 1e-15);
         assert!((bound.covariance.unwrap()[(0, 1)]).abs() < 1e-15);
+    }
+
+    /// Whatever the sizes by which the unknowns are scaled, also where their squares are no doubles, the bound is the same.
+    #[test]
+    fn the_bound_does_not_depend_on_sizes() {
+        let slopes = DMatrix::from_row_slice(3, 2, &[1.0, -1.0, 1.0, 0.0, 1.0, 1.0]);
+        for sizes in [[1e-250, 1e-250], [1e200, 1e200], [1e300, 1e300]] {
+            let bound = cramer_rao(&slopes, 0.1, &sizes);
+            assert!((bound.deviations[0] - 0.1 / 3f64.sqrt()).abs() < 1e-12, "{sizes:?}: {bound:?}");
+            assert!((bound.deviations[1] - 0.1 / 2f64.sqrt()).abs() < 1e-12, "{sizes:?}: {bound:?}");
+        }
+        // a state that is measured with a slope of 1e200 has a deviation, small as it is
+        let steep = cramer_rao(&DMatrix::from_element(2, 1, 1e200), 1e-9, &[1.0]).deviations[0];
+        assert!(steep > 0.0 && steep < 1e-200, "{steep}");
+        // and of one that no double holds nothing is known
+        let beyond = cramer_rao(&DMatrix::from_element(2, 1, 1e300), 1e-300, &[1e-300]).deviations[0];
+        assert_eq!(beyond, f64::INFINITY);
     }
 
     /// Two unknowns of which only the sum is measured, and a third that is measured: the third is observable.

@@ -34,8 +34,8 @@ pub(super) struct Neighbours<'a> {
 impl Neighbours<'_> {
     /// The probability that right residuals have neighbours that agree so much.
     ///
-    /// Residuals that are smaller than their stated errors agree by no more than they are large, and pass.
-    pub fn probability(&self) -> f64 {
+    /// Residuals that are smaller than their stated errors agree by no more than they are large, and pass. None where too few are left to tell.
+    pub fn probability(&self) -> Option<f64> {
         let measured = |place: &usize| self.unmeasured.binary_search(place).is_err();
         let next = |i: usize| (i + self.outputs..self.residuals.len()).step_by(self.outputs).find(measured);
         let pairs: Vec<(usize, usize)> = (self.relations..self.residuals.len())
@@ -44,7 +44,7 @@ impl Neighbours<'_> {
             .filter(|(_, j)| self.residuals[*j].is_some())
             .collect();
         if pairs.len() < FEWEST {
-            return 1.0;
+            return None;
         }
         let value = |i: usize| self.residuals[i].unwrap_or(0.0);
         let sum: f64 = pairs.iter().map(|(i, j)| value(*i) * value(*j)).sum();
@@ -54,16 +54,16 @@ impl Neighbours<'_> {
         // larger residuals than stated are a matter of the sum of squares; smaller ones are compared with what was stated
         let own = square / degrees;
         let variance = own.max(self.sigma * self.sigma);
-        let Some((mean, spread)) = self.moments(&pairs) else { return 1.0 };
+        let (mean, spread) = self.moments(&pairs)?;
         let coherent = self.coherent * self.coherent;
         let above = sum - pairs.len() as f64 * coherent - mean * own;
         let deviation = (spread * (variance * variance + 4.0 * coherent * variance)).sqrt();
         let tail = exceeded((above / deviation).powi(2), 1.0) / 2.0;
-        match above / deviation {
+        Some(match above / deviation {
             z if z.is_nan() => 0.0,
             z if z > 0.0 => tail,
             _ => 1.0 - tail,
-        }
+        })
     }
 
     /// Mean and variance of the statistic of errors of size one; none where too few degrees of freedom remain.
@@ -114,7 +114,7 @@ mod tests {
             sigma: 0.1,
             coherent,
         };
-        known.probability()
+        known.probability().unwrap()
     }
 
     /// Of right residuals the probability is even: the largest distance from that of 400 of them, by Kolmogorov's limit of one in a thousand.

@@ -1,10 +1,10 @@
 //! What the filters have in common: what they believe sample by sample with its bars, their innovations, and the bounds that they keep.
 
-use super::Learned;
 use super::task::Task;
 use super::together::Innovations;
 use super::track::{SampleEstimate, Track};
-use nalgebra::{Cholesky, DMatrix, DVector};
+use super::{Learned, Lost};
+use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 
 /// What a filter has come to so far.
@@ -24,10 +24,10 @@ pub(super) struct Filtered<'t, 'a> {
     held: BTreeMap<(usize, bool), (f64, usize)>,
 }
 
-/// An innovation: expected minus measured, and its covariance.
+/// An innovation: expected minus measured, and the lower triangular factor of its covariance.
 pub(super) struct Innovation {
     pub residual: DVector<f64>,
-    pub covariance: DMatrix<f64>,
+    pub root: DMatrix<f64>,
     /// The outputs that were measured, of which these are.
     pub measured: Vec<usize>,
 }
@@ -41,9 +41,53 @@ impl Innovation {
     }
 }
 
-/// The places of what was measured among the measurements of a sample.
-pub(super) fn measured(read: &[f64]) -> Vec<usize> {
-    (0..read.len()).filter(|place| !read[*place].is_nan()).collect()
+/// The places of what a filter corrects its state by at a sample: all that was measured then. At the first sample an output that is a state is not among it, since that
+/// state was taken from this measurement: it would count twice.
+pub(super) fn compared(task: &Task<'_>, row: usize) -> Vec<usize> {
+    let taken = &task.full.states[task.estimated()..];
+    let is_taken = |output: usize| row == 0 && taken.contains(&task.full.outputs[output]);
+    let read = task.measurements(row);
+    (0..read.len()).filter(|output| !read[*output].is_nan() && !is_taken(*output)).collect()
+}
+
+/// A lower triangular `S` with `S S^T = sum C C^T` over some blocks, with no negative number on its diagonal; none where a number is not finite.
+///
+/// Nothing is subtracted, so that no rounding makes a variance negative, and the numbers are deviations, whose range is twice that of variances.
+pub(super) fn factor(blocks: &[DMatrix<f64>]) -> Option<DMatrix<f64>> {
+    let n = blocks.first()?.nrows();
+    let width = blocks.iter().map(DMatrix::ncols).sum();
+    let mut all = DMatrix::zeros(n, width);
+    let mut at = 0;
+    for block in blocks {
+        all.columns_mut(at, block.ncols()).copy_from(block);
+        at += block.ncols();
+    }
+    let triangle = all.transpose().qr().unpack_r();
+    let mut factor = triangle.rows(0, n.min(triangle.nrows())).transpose();
+    for (place, mut column) in factor.column_iter_mut().enumerate() {
+        if column[place] < 0.0 {
+            column.neg_mut();
+        }
+    }
+    (factor.ncols() == n && factor.iter().all(|value| value.is_finite())).then_some(factor)
+}
+
+/// The standard deviations of a state whose covariance has this factor.
+pub(super) fn deviations(root: &DMatrix<f64>) -> DVector<f64> {
+    // no square is too large or too small for a double
+    DVector::from_fn(root.nrows(), |i, _| root.row(i).iter().copied().fold(0.0, f64::hypot))
+}
+
+/// The standard deviations of a state whose variances are these; of a variance that rounding has made negative, or no number, nothing is known.
+pub(super) fn of_variances(variances: &DVector<f64>) -> DVector<f64> {
+    variances.map(|own| if own >= 0.0 { own.sqrt() } else { f64::INFINITY })
+}
+
+/// Where a filter's numbers have left the doubles.
+pub(super) fn not_finite(task: &Task<'_>, row: usize) -> Lost {
+    let why =
+        "the filter's covariance is too large for numbers in doubles: give a smaller 'prior'".to_owned();
+    Lost { time: task.signals.times()[row], why }
 }
 
 impl<'t, 'a> Filtered<'t, 'a> {
@@ -60,13 +104,9 @@ impl<'t, 'a> Filtered<'t, 'a> {
         DVector::from_fn(self.task.full.outputs.len(), |output, _| own(output))
     }
 
-    /// Counts the innovation of a sample, and gives it in deviations of its own; none where its covariance is not known.
+    /// Counts the innovation of a sample, and gives it in deviations of its own.
     pub fn compare(&mut self, innovation: &Innovation) -> Option<DVector<f64>> {
-        if innovation.covariance.iter().any(|value| !value.is_finite()) {
-            return None;
-        }
-        let root = Cholesky::new(innovation.covariance.clone())?;
-        let own = root.l().solve_lower_triangular(&innovation.residual)?;
+        let own = innovation.root.solve_lower_triangular(&innovation.residual)?;
         self.chi_square += own.norm_squared();
         self.degrees += own.len();
         Some(own)
@@ -84,12 +124,23 @@ impl<'t, 'a> Filtered<'t, 'a> {
         self.before = own;
     }
 
-    /// What is believed at a sample, with the variances of the state, and the innovation there, which is empty where none was compared.
-    pub fn believe(&mut self, time: f64, state: &[f64], variances: &DVector<f64>, residual: Vec<f64>) {
+    /// What is believed at a sample, with the deviations of the state, and the innovation there, which is empty where none was compared.
+    pub fn believe(&mut self, time: f64, state: &[f64], deviations: &DVector<f64>, residual: Vec<f64>) {
         let sought = self.task.estimated();
-        let deviations = variances.iter().take(sought).map(|own| own.max(0.0).sqrt()).collect();
+        let deviations = deviations.iter().take(sought).copied().collect();
         let state = state[..sought].to_vec();
         self.track.estimates.push(SampleEstimate { time, state, deviations, residual });
+    }
+
+    /// A sample to which the model or the filter's covariance could not be followed: what was believed is held, with the outputs as they are read, and is no longer
+    /// known.
+    pub fn lose(&mut self, row: usize, state: &mut DVector<f64>, lost: &Lost) {
+        self.track.hold(lost);
+        let belief = state.as_slice()[..self.task.estimated()].to_vec();
+        *state = DVector::from_vec(self.task.full_state(&belief, row));
+        let unknown = DVector::from_element(state.len(), f64::INFINITY);
+        self.before = None;
+        self.believe(self.task.signals.times()[row], state.as_slice(), &unknown, Vec::new());
     }
 
     /// Moves a state to within the bounds that were stated: what is beyond one is put there, and all else goes with it as the covariance has it (D. Simon,
@@ -135,17 +186,17 @@ impl<'t, 'a> Filtered<'t, 'a> {
 }
 
 impl Learned {
-    /// Of a filter, with the covariance of its state.
+    /// Of a filter, with its state's covariance or a factor of it, and the deviations.
     pub(super) fn of_filter(
         task: &Task<'_>,
         state: &DVector<f64>,
         spread: &DMatrix<f64>,
-        variances: &DVector<f64>,
+        deviations: &DVector<f64>,
     ) -> Learned {
         let n = task.estimated();
         Learned {
             belief: state.as_slice()[..n].to_vec(),
-            deviations: Some(variances.iter().take(n).map(|variance| variance.max(0.0).sqrt()).collect()),
+            deviations: Some(deviations.iter().take(n).copied().collect()),
             filter: Some((state.clone(), spread.clone())),
             ..Learned::nothing(task)
         }

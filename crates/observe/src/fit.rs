@@ -15,6 +15,9 @@ pub(super) const COMPUTED: f64 = 1e-7;
 /// Where more than this part of the measurements are outliers, they are none: the model is wrong.
 const MOST_OUTLIERS: f64 = 0.1;
 
+/// Of fewer measurements of an output it is not told whether their residuals are independent.
+const FEWEST: usize = 8;
+
 /// What is known of the errors of the measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Noise {
@@ -57,6 +60,8 @@ pub enum NoiseFrom {
     Stated,
     /// It is the residual's own: no noise was stated.
     Residual,
+    /// It is the residual's own, and there are too few measurements to test whether that is noise: nothing bears the model out or contradicts it.
+    Untested,
     /// The residual is no larger than rounding and interpolation make it, and no noise was stated.
     Computation,
 }
@@ -69,7 +74,7 @@ pub struct Fit {
     /// Measurements less unknowns.
     pub degrees: usize,
     /// How likely a residual is that is no better, were the model right: of one so large (chi-square), whose neighbours agree so much, or that drifts so far, where the
-    /// noise was stated; of one whose neighbours are so alike (von Neumann's ratio) where it was not.
+    /// noise was stated; of one whose neighbours are so alike (von Neumann's ratio) where it was not. One where that was not tested.
     pub probability: f64,
     /// Measurements that no normal error explains, and that a robust loss leaves out of the test.
     pub outliers: usize,
@@ -90,6 +95,11 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// Whether the residuals were tested at all.
+    pub fn is_tested(&self) -> bool {
+        self.from != NoiseFrom::Untested
+    }
+
     /// Whether so many measurements are beyond what normal errors reach that they are no outliers.
     pub fn has_outliers(&self) -> bool {
         self.outliers as f64 > MOST_OUTLIERS * self.measurements as f64
@@ -203,6 +213,7 @@ impl Residuals<'_> {
             Neighbours { residuals, unmeasured, outputs, relations, slopes, taken, sigma, coherent }
                 .probability()
         });
+        let alike = alike.flatten();
         let drift = self.slopes.filter(|slopes| normal > 0.0 && slopes.nrows() == kept.len());
         let drift = drift.and_then(|slopes| self.drift(&kept, slopes, sigma, coherent));
         let probability = least_of([Some(large), alike, drift.map(|own| own.probability)]);
@@ -244,10 +255,15 @@ impl Residuals<'_> {
     fn by_itself(&self) -> Fit {
         let (degrees, rms) = (self.degrees(), self.rms());
         let sigma = rms.max(self.least);
-        let from = if rms > self.least { NoiseFrom::Residual } else { NoiseFrom::Computation };
         let chi_square = self.differences.norm_squared() / (sigma * sigma);
         let computed = rms <= self.computed().max(self.least);
-        let probability = if computed { 1.0 } else { self.independent() };
+        let tested = if computed { Some(1.0) } else { self.independent() };
+        let from = match tested {
+            _ if rms <= self.least => NoiseFrom::Computation,
+            Some(_) => NoiseFrom::Residual,
+            None => NoiseFrom::Untested,
+        };
+        let probability = tested.unwrap_or(1.0);
         let fits = degrees > 0 && probability >= self.alarm && rms.is_finite();
         let measurements = (self.differences.len() - self.unmeasured.len()).saturating_sub(self.relations);
         Fit {
@@ -265,8 +281,9 @@ impl Residuals<'_> {
         }
     }
 
-    /// The probability of neighbours so alike, the least over the outputs times their number.
-    fn independent(&self) -> f64 {
+    /// The probability of neighbours so alike, the least over the outputs that can be tested times their number; none where no output can be, since a test
+    /// that was not made is no evidence.
+    fn independent(&self) -> Option<f64> {
         let column = |output: usize| -> Vec<f64> {
             let places = (self.relations + output..self.differences.len()).step_by(self.outputs.max(1));
             places.filter(|place| self.is_measured(*place)).map(|place| self.differences[place]).collect()
@@ -274,15 +291,16 @@ impl Residuals<'_> {
         let tail = |column: Vec<f64>| {
             let n = column.len() as f64;
             let square: f64 = column.iter().map(|value| value * value).sum();
-            if n < 8.0 || square <= 0.0 {
-                return 1.0;
+            if column.len() < FEWEST || square <= 0.0 {
+                return None;
             }
             let steps: f64 = column.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
             let below = (2.0 - n / (n - 1.0) * steps / square) / (4.0 * (n - 2.0) / (n * n - 1.0)).sqrt();
-            if below <= 0.0 { 1.0 } else { exceeded(below * below, 1.0) / 2.0 }
+            Some(if below <= 0.0 { 1.0 } else { exceeded(below * below, 1.0) / 2.0 })
         };
-        let least = (0..self.outputs).map(|output| tail(column(output))).fold(1.0, f64::min);
-        (least * self.outputs as f64).min(1.0)
+        let tails: Vec<f64> = (0..self.outputs).filter_map(|output| tail(column(output))).collect();
+        let least = tails.iter().copied().reduce(f64::min)?;
+        Some((least * tails.len() as f64).min(1.0))
     }
 }
 
@@ -390,6 +408,21 @@ mod tests {
             let fits = |unknowns| Residuals { unknowns, ..rms_residual(&differences, 1e-4) }.fit(noise).fits;
             assert!(fits(159) && !fits(160) && !fits(161), "{noise:?}");
         }
+    }
+
+    /// Seven measurements of each of two outputs are too few to tell noise from a curve; eight are enough, also where the other output has fewer. A residual that the
+    /// computation explains needs no test.
+    #[test]
+    fn a_test_that_was_not_made_is_no_evidence() {
+        let curve = |count: usize| DVector::from_fn(count, |i, _| 1e-3 * (i / 2) as f64 - 3e-3);
+        let fit = |count: usize| rms_residual(&curve(count), 1e-2).fit(Noise::Unstated);
+        let few = fit(14);
+        assert!(few.fits && !few.is_tested() && few.from == NoiseFrom::Untested);
+        assert!(fit(15).from == NoiseFrom::Residual && fit(15).is_tested() && !fit(15).fits);
+        let none = rms_residual(&DVector::zeros(14), 1e-2).fit(Noise::Unstated);
+        assert!(none.fits && none.from == NoiseFrom::Computation);
+        let stated = rms_residual(&curve(14), 1e-2).fit(Noise::Stated { normal: 1e-3, rounding: 0.0 });
+        assert!(stated.is_tested());
     }
 
     /// By hand: of three independent probabilities the least is at most 0.1 with probability 1 - 0.9^3 = 0.271; what is no number is the least of all, and

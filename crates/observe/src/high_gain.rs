@@ -1,13 +1,13 @@
 //! The high-gain observer of Gauthier, Hammouri and Othman, which section 6.2 of the thesis names.
 
-use super::filtered::{Filtered, Innovation};
+use super::filtered::{Filtered, Innovation, of_variances};
 use super::flow::advance;
 use super::model::{Formulas, InputSource};
 use super::spread::Spread;
 use super::task::{Observer, Task};
 use super::track::Track;
 use super::{Learned, Lost, Model};
-use nalgebra::{DMatrix, DVector, RowDVector};
+use nalgebra::{Cholesky, DMatrix, DVector, RowDVector};
 use palmistry_math::expression::{NodeId, Symbol, gradient};
 use palmistry_math::number::{Duals, Refusal};
 use serde::Deserialize;
@@ -106,9 +106,13 @@ impl Observer for HighGain {
                 let covariance = error.of_residual(&canonical.places(), task.signals.sample(row));
                 let measured = (0..residual.len()).collect();
                 let residual = DVector::from_column_slice(&residual);
-                so_far.compare(&Innovation { residual, covariance, measured });
+                // after the state was lost there is no covariance, and nothing to compare
+                let is_known = covariance.iter().all(|value| value.is_finite());
+                if let Some(root) = Cholesky::new(covariance).filter(|_| is_known) {
+                    so_far.compare(&Innovation { residual, root: root.unpack(), measured });
+                }
             }
-            so_far.believe(times[row], state, &error.covariance().diagonal(), residual);
+            so_far.believe(times[row], state, &of_variances(&error.covariance().diagonal()), residual);
         };
         record(&mut so_far, &state, &error, 0);
         for row in 1..times.len() {
@@ -147,7 +151,7 @@ impl Observer for HighGain {
             lengths.join(" and ")
         ));
         let state = DVector::from_vec(state);
-        track.hand_on(Learned::of_filter(task, &state, &covariance, &covariance.diagonal()));
+        track.hand_on(Learned::of_filter(task, &state, &covariance, &of_variances(&covariance.diagonal())));
         track
     }
 }

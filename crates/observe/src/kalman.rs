@@ -1,18 +1,23 @@
 //! The extended Kalman filter, the field's usual choice.
 
-use super::filtered::{Filtered, Innovation, measured};
+use super::filtered::{Filtered, Innovation, compared, deviations, factor, not_finite};
 use super::task::{Observer, Task};
 use super::track::Track;
 use super::{Learned, Lost, Order};
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 
 /// The extended Kalman filter with continuous equations and sampled measurements.
 ///
 /// Between two samples the state follows the model and the covariance `P` becomes `F P F^T + Q dt`, `F` being the exact
-/// derivative of the flow over the step; at a sample state and covariance are corrected by the gain `P H^T (H P H^T + R)^-1`.
+/// derivative of the flow over the step; at a sample state and covariance are corrected by the gain `P H^T (H P H^T + R)^-1`. The guess is what is known
+/// before the first sample, whose measurements correct it as all later ones do.
 ///
-/// Reference: A. Gelb (ed.), Applied Optimal Estimation, 1974, table 6.1-1, with the flow's derivative in place of an Euler step.
+/// The covariance is carried by a factor `S`, `P = S S^T`, which orthogonal factors renew: of a first guess that is known a billion times worse than a
+/// measurement the covariance itself would keep no digit, and lose its sign.
+///
+/// References: A. Gelb (ed.), Applied Optimal Estimation, 1974, table 6.1-1, with the flow's derivative in place of an Euler step; G. J. Bierman,
+/// Factorization Methods for Discrete Sequential Estimation, 1977, for the factor.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Kalman {
@@ -36,8 +41,9 @@ impl Default for Kalman {
 pub(super) struct Passed {
     /// After the measurements of the sample.
     pub state: DVector<f64>,
-    pub covariance: DMatrix<f64>,
-    /// The derivative of the flow from the sample before, and what was predicted; none at the first sample and where the model could not be followed.
+    /// The factor of its covariance.
+    pub root: DMatrix<f64>,
+    /// The derivative of the flow from the sample before, and what was predicted; none at the first sample and where the filter was lost.
     pub predicted: Option<Predicted>,
 }
 
@@ -46,7 +52,8 @@ pub(super) struct Passed {
 pub(super) struct Predicted {
     pub flow: DMatrix<f64>,
     pub state: DVector<f64>,
-    pub covariance: DMatrix<f64>,
+    /// The factor of what the equations are believed to miss over the step.
+    pub noise: DMatrix<f64>,
 }
 
 impl Observer for Kalman {
@@ -59,7 +66,6 @@ impl Kalman {
     /// Goes through all samples; whoever goes back has what was `passed`, one a sample.
     pub(super) fn pass(&self, task: &Task<'_>, mut passed: Option<&mut Vec<Passed>>) -> Track {
         let times = task.signals.times();
-        let n = task.full.states.len();
         if let Some(why) = task.refuses_implicit() {
             return Track { remarks: vec![why], ..Track::default() };
         }
@@ -67,100 +73,119 @@ impl Kalman {
         let mut so_far = Filtered::begin(task, self.least_sigma);
         let learned = Learned::before(task);
         let mut state = DVector::from_vec(task.full_state(&learned.belief, 0));
-        let deviations = DVector::from_vec(task.prior_deviations(self.prior, sigma));
-        let mut covariance = DMatrix::from_diagonal(&deviations.map(|deviation| deviation.powi(2)));
-        let drive = |i: usize| task.sizes.get(i).map_or(0.0, |size| (self.process_noise * size).powi(2));
-        if let Some((known, spread)) = learned.filter {
-            (state, covariance) = (known, spread);
-        }
-        so_far.believe(times[0], state.as_slice(), &covariance.diagonal(), Vec::new());
-        let mut keep = |state: &DVector<f64>, covariance: &DMatrix<f64>, predicted: Option<Predicted>| {
+        let mut root = DMatrix::from_diagonal(&DVector::from_vec(task.prior_deviations(self.prior, sigma)));
+        let mut keep = |state: &DVector<f64>, root: &DMatrix<f64>, predicted: Option<Predicted>| {
             if let Some(passed) = passed.as_deref_mut() {
-                passed.push(Passed { state: state.clone(), covariance: covariance.clone(), predicted });
+                passed.push(Passed { state: state.clone(), root: root.clone(), predicted });
             }
         };
-        keep(&state, &covariance, None);
-        for row in 1..times.len() {
+        // what was learned before includes the first sample
+        let mut first = 0;
+        if let Some((known, spread)) = learned.filter {
+            (state, root, first) = (known, spread, 1);
+            so_far.believe(times[0], state.as_slice(), &deviations(&root), Vec::new());
+            keep(&state, &root, None);
+        }
+        for row in first..times.len() {
             if task.interrupted() {
                 break;
             }
-            let step = times[row] - times[row - 1];
-            let predicted = match predict(task, &state, &times[row - 1..=row]) {
-                Ok((there, flow)) => {
-                    state = there;
-                    covariance = &flow * covariance * flow.transpose();
-                    for i in 0..n {
-                        covariance[(i, i)] += drive(i) * step;
-                    }
-                    Predicted { flow, state: state.clone(), covariance: covariance.clone() }
-                }
+            let noise = so_far.measurement_variances().map(f64::sqrt);
+            let (predicted, innovation) = match self.step(task, &mut state, &mut root, &noise, row) {
+                Ok(step) => step,
                 Err(lost) => {
-                    so_far.track.hold(&lost);
-                    let belief = state.as_slice()[..task.estimated()].to_vec();
-                    state = DVector::from_vec(task.full_state(&belief, row));
-                    // a state that is held while the model is lost is no longer known
-                    let unknown = DVector::from_element(n, f64::INFINITY);
-                    so_far.believe(times[row], state.as_slice(), &unknown, Vec::new());
-                    keep(&state, &covariance, None);
+                    so_far.lose(row, &mut state, &lost);
+                    keep(&state, &root, None);
                     continue;
                 }
             };
-            let noise = so_far.measurement_variances();
-            let innovation = correct(task, &mut state, &mut covariance, &noise, row);
             innovation.iter().for_each(|own| so_far.compare_white(own));
-            so_far.hold(times[row], &mut state, &covariance);
+            so_far.hold(times[row], &mut state, &(&root * root.transpose()));
             let residual = innovation.map(|own| own.of_all(noise.len())).unwrap_or_default();
-            so_far.believe(times[row], state.as_slice(), &covariance.diagonal(), residual);
-            keep(&state, &covariance, Some(predicted));
+            so_far.believe(times[row], state.as_slice(), &deviations(&root), residual);
+            keep(&state, &root, predicted);
         }
         let mut track = so_far.end();
-        track.hand_on(Learned::of_filter(task, &state, &covariance, &covariance.diagonal()));
+        track.hand_on(Learned::of_filter(task, &state, &root, &deviations(&root)));
         track
     }
+
+    /// Predicts a sample from the one before it, where there is one, and corrects it by what was measured, with errors of these deviations. A state to which the
+    /// model cannot be followed, and one that cannot be corrected, stay as they are.
+    fn step(
+        &self,
+        task: &Task<'_>,
+        state: &mut DVector<f64>,
+        root: &mut DMatrix<f64>,
+        noise: &DVector<f64>,
+        row: usize,
+    ) -> Result<(Option<Predicted>, Option<Innovation>), Lost> {
+        let mut predicted = None;
+        if row > 0 {
+            let own = self.predict(task, state, row)?;
+            *root = factor(&[&own.flow * &*root, own.noise.clone()]).ok_or_else(|| not_finite(task, row))?;
+            state.copy_from(&own.state);
+            predicted = Some(own);
+        }
+        let corrected = correct(task, state, root, noise, row)?;
+        let innovation = corrected.map(|(there, spread, innovation)| {
+            (*state, *root) = (there, spread);
+            innovation
+        });
+        Ok((predicted, innovation))
+    }
+
+    /// The state at a sample from the one before it, with its derivative by that, and what the equations may have missed.
+    fn predict(&self, task: &Task<'_>, state: &DVector<f64>, row: usize) -> Result<Predicted, Lost> {
+        let times = &task.signals.times()[row - 1..=row];
+        let free: Vec<usize> = (0..state.len()).collect();
+        let samples = task.full_flow().follow(state.as_slice(), &free, times, Order::First)?;
+        let end = samples.into_iter().next_back();
+        let end = end.ok_or_else(|| Lost { time: times[0], why: "there is no time to follow".to_owned() })?;
+        let drive = |i: usize| task.sizes.get(i).map_or(0.0, |size| self.process_noise * size);
+        let missed = DVector::from_fn(state.len(), |i, _| drive(i) * (times[1] - times[0]).sqrt());
+        let noise = DMatrix::from_diagonal(&missed);
+        Ok(Predicted { flow: end.slopes, state: DVector::from_vec(end.state), noise })
+    }
 }
 
-/// The state after a step, and its derivative by the state before.
-fn predict(
-    task: &Task<'_>,
-    state: &DVector<f64>,
-    times: &[f64],
-) -> Result<(DVector<f64>, DMatrix<f64>), Lost> {
-    let free: Vec<usize> = (0..state.len()).collect();
-    let samples = task.full_flow().follow(state.as_slice(), &free, times, Order::First)?;
-    let end = samples.into_iter().next_back();
-    let end = end.ok_or_else(|| Lost { time: times[0], why: "there is no time to follow".to_owned() })?;
-    Ok((DVector::from_vec(end.state), end.slopes))
-}
-
-/// Corrects a state by measurements, whose errors have these variances; gives the innovation, or nothing where nothing was measured or no gain exists.
+/// State and factor after measurements, whose errors have these deviations, and the innovation; nothing where nothing was measured.
+///
+/// Joseph's form: the part of the error that stays, and that of the measurements. Neither is a difference.
 fn correct(
     task: &Task<'_>,
-    state: &mut DVector<f64>,
-    covariance: &mut DMatrix<f64>,
-    variances: &DVector<f64>,
+    state: &DVector<f64>,
+    root: &DMatrix<f64>,
+    deviations: &DVector<f64>,
     row: usize,
-) -> Option<Innovation> {
-    let free: Vec<usize> = (0..state.len()).collect();
-    let here = task
-        .full_flow()
-        .follow(state.as_slice(), &free, &task.signals.times()[row..=row], Order::First)
-        .ok()?;
-    let here = here.first()?;
-    let read = task.measurements(row);
-    let measured = measured(&read);
+) -> Result<Option<(DVector<f64>, DMatrix<f64>, Innovation)>, Lost> {
+    let measured = compared(task, row);
     if measured.is_empty() {
-        return None;
+        return Ok(None);
     }
-    let residual =
-        DVector::from_iterator(measured.len(), measured.iter().map(|i| here.outputs[*i] - read[*i]));
+    let free: Vec<usize> = (0..state.len()).collect();
+    let time = &task.signals.times()[row..=row];
+    let here = task.full_flow().follow(state.as_slice(), &free, time, Order::First)?;
+    let here = here.first().ok_or_else(|| not_finite(task, row))?;
+    let read = task.measurements(row);
+    let off = measured.iter().map(|i| here.outputs[*i] - read[*i]);
+    let residual = DVector::from_iterator(measured.len(), off);
     let h = &here.output_slopes.select_rows(&measured);
-    let noise = DMatrix::from_diagonal(&variances.select_rows(&measured));
-    let innovation = h * &*covariance * h.transpose() + &noise;
-    let gain = Cholesky::new(innovation.clone())?.solve(&(h * &*covariance)).transpose();
-    *state -= &gain * &residual;
-    // Joseph's form: stays symmetric and positive whatever the rounding
-    let rest = DMatrix::identity(state.len(), state.len()) - &gain * h;
-    let corrected = &rest * &*covariance * rest.transpose() + &gain * noise * gain.transpose();
-    *covariance = (&corrected + corrected.transpose()) * 0.5;
-    Some(Innovation { residual, covariance: innovation, measured })
+    let noise = DMatrix::from_diagonal(&deviations.select_rows(&measured));
+    let corrected = || {
+        let seen = h * root;
+        let innovation = factor(&[seen.clone(), noise.clone()])?;
+        // gain = P H^T (N N^T)^-1, from the right by its two triangles
+        let half = innovation.solve_lower_triangular(&(seen * root.transpose()))?;
+        let gain = innovation.transpose().solve_upper_triangular(&half)?.transpose();
+        let there = state - &gain * &residual;
+        let rest = DMatrix::identity(state.len(), state.len()) - &gain * h;
+        let root = factor(&[rest * root, gain * noise])?;
+        there.iter().all(|value| value.is_finite()).then_some((there, root, innovation))
+    };
+    let (there, spread, innovation) = corrected().ok_or_else(|| not_finite(task, row))?;
+    Ok(Some((there, spread, Innovation { residual, root: innovation, measured })))
 }
+
+#[cfg(test)]
+mod tests;

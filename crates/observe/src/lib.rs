@@ -16,6 +16,8 @@ mod bound;
 mod calibration;
 mod chi_square;
 mod correlation;
+#[cfg(test)]
+mod decays;
 pub mod dormand_prince;
 mod drift;
 mod ending;

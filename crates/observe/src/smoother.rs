@@ -1,16 +1,19 @@
 //! The fixed-interval smoother: what an extended Kalman filter believes, corrected backwards by all that was measured later.
 //!
 //! H. E. Rauch, F. Tung, C. T. Striebel, Maximum likelihood estimates of linear dynamic systems, AIAA Journal 3, 1965: with `F` the derivative of the flow from one sample to the next, `P`
-//! the covariance after the measurements of a sample and `P'` the one that is predicted for the next, the estimate is moved by `P F^T P'^-1` of what the next one was moved by.
+//! the covariance after the measurements of a sample and `P'` the one that is predicted for the next, the estimate is moved by `G = P F^T P'^-1` of what the next one was moved by.
+//!
+//! The covariance is that of what of the filter's error is not told by the next state, and `G` times the next one's: a sum, and no difference, of two factors (as Joseph's
+//! form is of a correction).
 
-use super::kalman::Kalman;
+use super::filtered::{deviations, factor};
+use super::kalman::{Kalman, Passed, Predicted};
 use super::task::{Observer, Task};
 use super::track::Track;
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
-use palmistry_math::number::MOST_ITERATIONS;
+use nalgebra::{DMatrix, DVector};
 
-/// A direction of a predicted covariance, in units of the deviations, counts as known exactly below this.
-const KNOWN: f64 = 1e-14;
+/// A direction of a predicted state is known exactly where its deviation is this part of the state's, or less.
+const KNOWN: f64 = 1e-13;
 
 /// The smoother, with the settings of its filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,44 +30,54 @@ impl Observer for Smoother {
         let mut later: Option<(DVector<f64>, DMatrix<f64>)> = None;
         for (place, own) in passed.iter().enumerate().rev() {
             let next = passed.get(place + 1).and_then(|next| next.predicted.as_ref());
-            let (state, covariance) = match (later, next) {
-                (Some((there, spread)), Some(next)) => {
-                    // a covariance without an inverse in doubles is not corrected by later samples
-                    let gain = inverse(&next.covariance).map_or_else(
-                        || DMatrix::zeros(there.len(), there.len()),
-                        |inverse| &own.covariance * next.flow.transpose() * inverse,
-                    );
-                    let state = &own.state + &gain * (there - &next.state);
-                    let covariance = &own.covariance + &gain * (spread - &next.covariance) * gain.transpose();
-                    (state, (&covariance + covariance.transpose()) * 0.5)
-                }
-                _ => (own.state.clone(), own.covariance.clone()),
-            };
+            let smoothed = later.as_ref().zip(next).and_then(|(later, next)| back(own, next, later));
+            let (state, root) = smoothed.unwrap_or_else(|| (own.state.clone(), own.root.clone()));
             if let Some(told) = track.estimates.get_mut(place)
                 && told.deviations.iter().all(|deviation| deviation.is_finite())
             {
                 told.state = task.within_bounds(state.as_slice().to_vec())[..sought].to_vec();
-                told.deviations = (0..sought).map(|i| covariance[(i, i)].max(0.0).sqrt()).collect();
+                told.deviations = deviations(&root).iter().take(sought).copied().collect();
             }
-            later = Some((state, covariance));
+            later = Some((state, root));
         }
         track
     }
 }
 
-/// The inverse of a covariance. None where it is singular, since what is known exactly is not corrected, or where a number is not finite.
-fn inverse(covariance: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let sizes = covariance.diagonal().map(|variance| if variance > 0.0 { variance.sqrt() } else { 1.0 });
-    let scaled = DMatrix::from_fn(covariance.nrows(), covariance.ncols(), |i, j| {
-        covariance[(i, j)] / (sizes[i] * sizes[j])
-    });
-    if scaled.iter().any(|value| !value.is_finite()) {
-        return None;
+/// State and factor at a sample, corrected by those at the next one. None where a number is not finite: then later samples correct nothing.
+///
+/// The triangle of `[F S, N; S, 0]`, `N` being the factor of the noise of the process, has the factor of the predicted covariance in its first rows, below it `G` times
+/// that, and on its diagonal the factor of what the next state does not tell.
+fn back(
+    own: &Passed,
+    next: &Predicted,
+    (state, root): &(DVector<f64>, DMatrix<f64>),
+) -> Option<(DVector<f64>, DMatrix<f64>)> {
+    let n = own.state.len();
+    let mut both = DMatrix::zeros(2 * n, 2 * n);
+    both.view_mut((0, 0), (n, n)).copy_from(&(&next.flow * &own.root));
+    both.view_mut((0, n), (n, n)).copy_from(&next.noise);
+    both.view_mut((n, 0), (n, n)).copy_from(&own.root);
+    let triangle = factor(&[both])?;
+    let part = |row: usize, column: usize| triangle.view((row, column), (n, n)).into_owned();
+    let gain = divided(&part(n, 0), &part(0, 0));
+    let there = &own.state + &gain * (state - &next.state);
+    let spread = factor(&[part(n, n), gain * root])?;
+    there.iter().all(|value| value.is_finite()).then_some((there, spread))
+}
+
+/// `X L^-1` with a lower triangular `L`; nothing along what `L` has no direction of its own for, since what is known exactly is not corrected.
+fn divided(x: &DMatrix<f64>, triangle: &DMatrix<f64>) -> DMatrix<f64> {
+    let (n, sizes) = (triangle.nrows(), deviations(triangle));
+    let mut quotient = DMatrix::zeros(x.nrows(), n);
+    for j in (0..n).rev() {
+        let pivot = triangle[(j, j)];
+        if pivot <= KNOWN * sizes[j] {
+            continue;
+        }
+        let later: DVector<f64> =
+            quotient.columns(j + 1, n - j - 1) * triangle.view((j + 1, j), (n - j - 1, 1)).column(0);
+        quotient.set_column(j, &((x.column(j) - later) / pivot));
     }
-    let eigen = SymmetricEigen::try_new(scaled, f64::EPSILON, MOST_ITERATIONS)?;
-    let parts = eigen.eigenvalues.map(|value| if value > KNOWN { 1.0 / value } else { 0.0 });
-    let inverse = &eigen.eigenvectors * DMatrix::from_diagonal(&parts) * eigen.eigenvectors.transpose();
-    Some(DMatrix::from_fn(covariance.nrows(), covariance.ncols(), |i, j| {
-        inverse[(i, j)] / (sizes[i] * sizes[j])
-    }))
+    quotient
 }

@@ -39,12 +39,13 @@ pub(super) fn suspects(task: &Task<'_>, window: &Window<'_>, update: &Update, al
     let window = Window { start, ..window.clone() };
     let unknowns = window.unknowns(&window.start);
     let Ok(here) = window.expand(&unknowns, Order::First) else { return Vec::new() };
-    let Some(unobserved) = Remainder::of(&here, &window, task) else { return Vec::new() };
+    let tested = TestedRows::of(&here, &window, &fit);
+    let Some(unobserved) = Remainder::of(&tested, &window, task) else { return Vec::new() };
     let needed = noncentrality(alarm, POWER, fit.degrees as f64);
     let directions = directions(task, &window, &here);
     let judged = |direction: Direction| {
-        let slope = window.weighted(direction.slope);
-        unobserved.judge(Direction { slope, ..direction }, &here, &fit, needed)
+        let slope = tested.only(window.weighted(direction.slope));
+        unobserved.judge(Direction { slope, ..direction }, &tested, &fit, needed)
     };
     let mut judged: Vec<(Suspect, DVector<f64>)> = directions.into_iter().filter_map(judged).collect();
     let names: Vec<String> = judged.iter().map(|(suspect, _)| suspect.to_string()).collect();
@@ -63,6 +64,33 @@ pub(super) fn is_asked(update: &Update) -> bool {
     stated && matches!(update.end, UpdateEnd::Converged | UpdateEnd::DoesNotFit)
 }
 
+/// What the test of fit compares: residuals without what a robust loss leaves out of it as outliers, and the derivatives that belong to them.
+struct TestedRows {
+    residuals: DVector<f64>,
+    slopes: DMatrix<f64>,
+    outliers: Vec<usize>,
+}
+
+impl TestedRows {
+    fn of(here: &WindowExpansion, window: &Window<'_>, fit: &Fit) -> TestedRows {
+        let loss = window.loss.0;
+        let is_out = |i: &usize| loss.is_outlier(here.counted[*i], fit.sigma, 0.0);
+        let outliers: Vec<usize> = (window.relations()..here.counted.len()).filter(is_out).collect();
+        let (mut residuals, mut slopes) = (here.counted.clone(), here.counted_slopes().clone());
+        for place in &outliers {
+            residuals[*place] = 0.0;
+            slopes.row_mut(*place).fill(0.0);
+        }
+        TestedRows { residuals, slopes, outliers }
+    }
+
+    /// A direction without what it has along outliers.
+    fn only(&self, mut direction: DVector<f64>) -> DVector<f64> {
+        self.outliers.iter().for_each(|place| direction[*place] = 0.0);
+        direction
+    }
+}
+
 /// The rest of directions where the unknowns have followed as far as they can.
 struct Remainder {
     /// The pseudoinverse of the scaled derivatives by its factors, `V / S` and `U^T`; the sizes with it.
@@ -74,14 +102,14 @@ struct Remainder {
 }
 
 impl Remainder {
-    fn of(here: &WindowExpansion, window: &Window<'_>, task: &Task<'_>) -> Option<Remainder> {
+    fn of(tested: &TestedRows, window: &Window<'_>, task: &Task<'_>) -> Option<Remainder> {
         let size = |place: &usize| match task.sizes.get(*place) {
             Some(size) => *size,
             None => window.start[*place].abs().max(1e-3),
         };
         let sizes: Vec<f64> = window.free.iter().map(size).collect();
-        let (n, p) = here.slopes.shape();
-        let scaled = DMatrix::from_fn(n, p, |i, j| here.slopes[(i, j)] * sizes[j]);
+        let (n, p) = tested.slopes.shape();
+        let scaled = DMatrix::from_fn(n, p, |i, j| tested.slopes[(i, j)] * sizes[j]);
         if scaled.iter().any(|value| !value.is_finite()) {
             return None;
         }
@@ -97,7 +125,7 @@ impl Remainder {
     fn judge(
         &self,
         direction: Direction,
-        here: &WindowExpansion,
+        tested: &TestedRows,
         fit: &Fit,
         needed: f64,
     ) -> Option<(Suspect, DVector<f64>)> {
@@ -118,7 +146,7 @@ impl Remainder {
             }
         }
         // the differences are expected minus measured
-        let error = if is_observable { -left.dot(&here.differences) / (seen * seen) } else { 0.0 };
+        let error = if is_observable { -left.dot(&tested.residuals) / (seen * seen) } else { 0.0 };
         let noticed = is_observable.then(|| needed.sqrt() * fit.sigma / seen);
         let explains = (error, (error * seen / fit.sigma).powi(2));
         let trace = if is_observable { left / seen } else { DVector::zeros(slope.len()) };

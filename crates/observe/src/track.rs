@@ -109,11 +109,16 @@ impl Update {
         self.is_borne_out() && self.fit.is_some_and(|fit| fit.from == NoiseFrom::Stated)
     }
 
+    /// Whether it has an answer whose residuals could not be tested: too few were measured, and no noise is stated.
+    pub fn is_untested(&self) -> bool {
+        self.is_borne_out() && self.fit.is_some_and(|fit| !fit.is_tested())
+    }
+
     /// Takes part in the tests of all windows together, where it was tested at all.
     pub fn count_in(&self, tested: &mut Tested) {
         let is_at_best =
             !matches!(self.end, UpdateEnd::Unobservable { .. } | UpdateEnd::Lost(_) | UpdateEnd::StepsSpent);
-        let fit = self.fit.filter(|fit| is_at_best && fit.from != NoiseFrom::Computation);
+        let fit = self.fit.filter(|fit| is_at_best && fit.from != NoiseFrom::Computation && fit.is_tested());
         if let Some(fit) = fit {
             tested.window(fit.probability);
         }

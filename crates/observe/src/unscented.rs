@@ -1,6 +1,6 @@
 //! The unscented Kalman filter: no derivative is taken, points about the estimate are followed instead.
 
-use super::filtered::{Filtered, Innovation, measured};
+use super::filtered::{Filtered, Innovation, compared, deviations, factor, not_finite};
 use super::task::{Observer, Task};
 use super::track::Track;
 use super::{Learned, Lost, Order};
@@ -71,21 +71,6 @@ impl Points {
     }
 }
 
-/// A lower triangular `S` with `S S^T = sum C C^T` over some blocks.
-fn factor(blocks: &[DMatrix<f64>]) -> Option<DMatrix<f64>> {
-    let n = blocks.first()?.nrows();
-    let width = blocks.iter().map(DMatrix::ncols).sum();
-    let mut all = DMatrix::zeros(n, width);
-    let mut at = 0;
-    for block in blocks {
-        all.columns_mut(at, block.ncols()).copy_from(block);
-        at += block.ncols();
-    }
-    let triangle = all.transpose().qr().unpack_r();
-    let factor = triangle.rows(0, n.min(triangle.nrows())).transpose();
-    (factor.ncols() == n && factor.iter().all(|value| value.is_finite())).then_some(factor)
-}
-
 impl Observer for Unscented {
     fn observe(&self, task: &Task<'_>) -> Track {
         let times = task.signals.times();
@@ -97,15 +82,14 @@ impl Observer for Unscented {
         let mut so_far = Filtered::begin(task, self.least_sigma);
         let learned = Learned::before(task);
         let mut state = DVector::from_vec(task.full_state(&learned.belief, 0));
-        let deviations = DVector::from_vec(task.prior_deviations(self.prior, sigma));
-        let mut root = DMatrix::from_diagonal(&deviations);
+        let mut root = DMatrix::from_diagonal(&DVector::from_vec(task.prior_deviations(self.prior, sigma)));
         let drive =
             DVector::from_fn(n, |i, _| task.sizes.get(i).map_or(0.0, |size| self.process_noise * size));
         // what was learned before includes the first sample
         let mut first = 0;
         if let Some((known, spread)) = learned.filter {
             (state, root, first) = (known, spread, 1);
-            so_far.believe(times[0], state.as_slice(), &variances(&root), Vec::new());
+            so_far.believe(times[0], state.as_slice(), &deviations(&root), Vec::new());
         }
         for row in first..times.len() {
             if task.interrupted() {
@@ -116,35 +100,32 @@ impl Observer for Unscented {
                 match self.predict(task, &state, &root, &drive, &times[row - 1..=row]) {
                     Ok((there, spread)) => (state, root) = (there, spread),
                     Err(lost) => {
-                        so_far.track.hold(&lost);
-                        let belief = state.as_slice()[..task.estimated()].to_vec();
-                        state = DVector::from_vec(task.full_state(&belief, row));
-                        // a state that is held while the model is lost is no longer known
-                        let unknown = DVector::from_element(n, f64::INFINITY);
-                        so_far.believe(times[row], state.as_slice(), &unknown, Vec::new());
+                        so_far.lose(row, &mut state, &lost);
                         continue;
                     }
                 }
             }
             let mut residual = Vec::new();
             let noise = so_far.measurement_variances().map(f64::sqrt);
-            if let Some((there, spread, innovation)) = self.correct(task, &state, &root, &noise, row) {
-                (state, root) = (there, spread);
-                so_far.compare_white(&innovation);
-                residual = innovation.of_all(noise.len());
+            match self.correct(task, &state, &root, &noise, row) {
+                Ok(Some((there, spread, innovation))) => {
+                    (state, root) = (there, spread);
+                    so_far.compare_white(&innovation);
+                    residual = innovation.of_all(noise.len());
+                }
+                Ok(None) => {}
+                Err(lost) => {
+                    so_far.lose(row, &mut state, &lost);
+                    continue;
+                }
             }
             so_far.hold(times[row], &mut state, &(&root * root.transpose()));
-            so_far.believe(times[row], state.as_slice(), &variances(&root), residual);
+            so_far.believe(times[row], state.as_slice(), &deviations(&root), residual);
         }
         let mut track = so_far.end();
-        track.hand_on(Learned::of_filter(task, &state, &root, &variances(&root)));
+        track.hand_on(Learned::of_filter(task, &state, &root, &deviations(&root)));
         track
     }
-}
-
-/// The variances of a state, from the factor of its covariance.
-fn variances(root: &DMatrix<f64>) -> DVector<f64> {
-    (root * root.transpose()).diagonal()
 }
 
 impl Unscented {
@@ -169,11 +150,10 @@ impl Unscented {
         let mean = points.mean(&there);
         let noise = DMatrix::from_diagonal(&(drive * (times[1] - times[0]).sqrt()));
         let root = factor(&[points.deviations(&there, &mean), noise]);
-        let root = root.ok_or_else(|| Lost { time: times[1], why: "a number is not finite".to_owned() })?;
-        Ok((mean, root))
+        Ok((mean, root.ok_or_else(|| Lost { time: times[1], why: "a number is not finite".to_owned() })?))
     }
 
-    /// State and factor after a measurement whose errors have these deviations, and the innovation; none where nothing was measured or no gain exists.
+    /// State and factor after a measurement whose errors have these deviations, and the innovation; none where nothing was measured.
     fn correct(
         &self,
         task: &Task<'_>,
@@ -181,36 +161,37 @@ impl Unscented {
         root: &DMatrix<f64>,
         deviations: &DVector<f64>,
         row: usize,
-    ) -> Option<(DVector<f64>, DMatrix<f64>, Innovation)> {
+    ) -> Result<Option<(DVector<f64>, DMatrix<f64>, Innovation)>, Lost> {
+        let measured = compared(task, row);
+        if measured.is_empty() {
+            return Ok(None);
+        }
         let points = Points::about(state, root, self.kappa);
         let time = &task.signals.times()[row..=row];
         let mut seen = Vec::with_capacity(points.points.len());
         for point in &points.points {
-            let samples = task.full_flow().follow(point.as_slice(), &[], time, Order::Value).ok()?;
-            seen.push(DVector::from_vec(samples.into_iter().next()?.outputs));
+            let samples = task.full_flow().follow(point.as_slice(), &[], time, Order::Value)?;
+            let here = samples.into_iter().next().ok_or_else(|| not_finite(task, row))?;
+            seen.push(DVector::from_vec(here.outputs).select_rows(&measured));
         }
         let read = DVector::from_vec(task.measurements(row));
-        let measured = measured(read.as_slice());
-        if measured.is_empty() {
-            return None;
-        }
-        let seen: Vec<DVector<f64>> = seen.iter().map(|own| own.select_rows(&measured)).collect();
         let (read, deviations) = (read.select_rows(&measured), deviations.select_rows(&measured));
         let expected = points.mean(&seen);
         let outputs = points.deviations(&seen, &expected);
         let states = points.deviations(&points.points, state);
         let noise = DMatrix::from_diagonal(&deviations);
-        let innovation = factor(&[outputs.clone(), noise.clone()])?;
-        // gain = Pxy (S S^T)^-1, from the right by its two triangles
-        let cross = &states * outputs.transpose();
-        let half = innovation.solve_lower_triangular(&cross.transpose())?;
-        let gain = innovation.transpose().solve_upper_triangular(&half)?.transpose();
         let residual = &expected - &read;
-        let corrected = state - &gain * &residual;
-        let root = factor(&[states - &gain * outputs, &gain * noise])?;
-        let is_finite = corrected.iter().all(|value| value.is_finite());
-        let covariance = &innovation * innovation.transpose();
-        let innovation = Innovation { residual, covariance, measured };
-        is_finite.then_some((corrected, root, innovation))
+        let corrected = || {
+            let innovation = factor(&[outputs.clone(), noise.clone()])?;
+            // gain = Pxy (S S^T)^-1, from the right by its two triangles
+            let cross = &states * outputs.transpose();
+            let half = innovation.solve_lower_triangular(&cross.transpose())?;
+            let gain = innovation.transpose().solve_upper_triangular(&half)?.transpose();
+            let there = state - &gain * &residual;
+            let root = factor(&[&states - &gain * &outputs, &gain * &noise])?;
+            there.iter().all(|value| value.is_finite()).then_some((there, root, innovation))
+        };
+        let (there, spread, innovation) = corrected().ok_or_else(|| not_finite(task, row))?;
+        Ok(Some((there, spread, Innovation { residual, root: innovation, measured })))
     }
 }

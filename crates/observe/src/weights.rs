@@ -187,12 +187,17 @@ impl Weights {
         degrees: usize,
         (loss, alarm): (Loss, f64),
     ) -> Fit {
-        let mut left = left.clone();
-        let is_out = |value: &&mut f64| loss.is_outlier(**value, self.unit, computed);
-        let out = left.iter_mut().filter(is_out).map(|value| *value = 0.0).count();
+        let (mut left, mut slopes) = (left.clone(), slopes.clone());
+        let outliers: Vec<usize> =
+            (0..left.len()).filter(|i| loss.is_outlier(left[*i], self.unit, computed)).collect();
+        for place in &outliers {
+            left[*place] = 0.0;
+            slopes.row_mut(*place).fill(0.0);
+        }
+        let out = outliers.len();
         let degrees = degrees.saturating_sub(out);
         let chi_square = left.norm_squared() / (self.unit * self.unit);
-        let (rest, drift) = self.unexplained(&left, slopes, computed).unwrap_or((f64::NAN, None));
+        let (rest, drift) = self.unexplained(&left, &slopes, computed).unwrap_or((f64::NAN, None));
         let large = match rest {
             rest if rest <= 0.0 => 1.0,
             rest => exceeded(rest * rest, degrees as f64),

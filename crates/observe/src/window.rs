@@ -46,8 +46,10 @@ pub struct WindowExpansion {
     pub differences: DVector<f64>,
     /// The same as they are where the loss is no square, by which the test of fit judges.
     pub counted: DVector<f64>,
-    /// Their derivatives, n by p, weighted as they are.
+    /// Their derivatives, n by p, weighted as they are, and by the loss where it is no square.
     pub slopes: DMatrix<f64>,
+    /// The derivatives of what is `counted`, where the loss is no square: without its weights.
+    unscaled: Option<DMatrix<f64>>,
     /// The derivative of `k`.
     pub gradient: DVector<f64>,
     /// The second derivative of `k`: exact at order two, without the second derivatives of the output at order one.
@@ -62,6 +64,14 @@ impl WindowExpansion {
     /// The root of the mean square of the differences as they are.
     pub fn rms_residual(&self) -> f64 {
         self.left.norm() / (self.compared.max(1) as f64).sqrt()
+    }
+
+    /// The derivatives of what is `counted`.
+    ///
+    /// An estimate that is off by `d` moves the residuals by `J d`, whatever the loss that it is the best of: what is orthogonal to `J` is of the errors alone. The
+    /// derivatives of the loss do not span that, since they are small where a residual is large.
+    pub fn counted_slopes(&self) -> &DMatrix<f64> {
+        self.unscaled.as_ref().unwrap_or(&self.slopes)
     }
 }
 
@@ -130,6 +140,17 @@ impl Window<'_> {
         )
     }
 
+    /// The derivatives of differences, with those of what is known before them in the place of the first sample.
+    fn slopes_after_arrival(&self, unknowns: &DVector<f64>, slopes: DMatrix<f64>) -> DMatrix<f64> {
+        let Some(arrival) = &self.arrival else { return slopes };
+        let (_, own) = arrival.off(&self.free, unknowns);
+        let rest = slopes.nrows() - self.of_first();
+        let mut all = DMatrix::zeros(own.nrows() + rest, slopes.ncols());
+        all.rows_mut(0, own.nrows()).copy_from(&own);
+        all.rows_mut(own.nrows(), rest).copy_from(&slopes.rows(self.of_first(), rest));
+        all
+    }
+
     fn differences(&self, samples: &[Sample]) -> DVector<f64> {
         let rows = samples.iter().zip(&self.measured);
         let all =
@@ -188,6 +209,7 @@ impl Window<'_> {
         }
         let mut pull = differences.clone();
         let (loss, sigma) = self.loss;
+        let unscaled = (loss != Loss::Squares).then(|| self.slopes_after_arrival(unknowns, slopes.clone()));
         if loss != Loss::Squares {
             for (i, value) in pull.iter_mut().enumerate() {
                 let (residual, slope) = loss.residual(*value, sigma);
@@ -199,16 +221,8 @@ impl Window<'_> {
             pull = weights.back(&pull);
         }
         self.unmeasured().for_each(|place| pull[place] = 0.0);
-        let mut skipped = 0;
-        if let Some(arrival) = &self.arrival {
-            skipped = self.of_first();
-            let (_, own) = arrival.off(&self.free, unknowns);
-            let mut all = DMatrix::zeros(own.nrows() + slopes.nrows() - skipped, p);
-            all.rows_mut(0, own.nrows()).copy_from(&own);
-            let rest = slopes.nrows() - skipped;
-            all.rows_mut(own.nrows(), rest).copy_from(&slopes.rows(skipped, rest));
-            slopes = all;
-        }
+        let skipped = self.arrival.as_ref().map_or(0, |_| self.of_first());
+        let slopes = self.slopes_after_arrival(unknowns, slopes);
         let counted = differences.clone();
         let differences = self.after_arrival(unknowns, differences);
         let mut hessian = slopes.tr_mul(&slopes);
@@ -234,6 +248,7 @@ impl Window<'_> {
             counted,
             differences,
             slopes,
+            unscaled,
         })
     }
 }

@@ -40,6 +40,34 @@ fn what_is_no_file_is_refused_in_words() {
     }
 }
 
+/// A scene that names a device is not told that there is no such file.
+#[test]
+fn what_a_scene_names_and_is_no_file_is_told_from_what_is_not_there() {
+    let folder = folder();
+    write(&folder, "a.proof", SMALL);
+    let place = |name: &str| folder.path().join(name).display().to_string();
+    assert!(Command::new("mkfifo").arg(place("pipe.csv")).status().unwrap().success());
+    for (model, record, why) in [
+        ("/dev/zero", "run.csv", "/dev/zero is no regular file"),
+        ("a.proof", "/dev/zero", "/dev/zero is no regular file"),
+        ("a.proof", "pipe.csv", "pipe.csv is no regular file"),
+        ("a.proof", "none.csv", "there is no file"),
+        ("a.proof", "a.proof/run.csv", "there is no file"),
+    ] {
+        let text = format!(
+            "title = \"a\"\nmodel = \"{model}\"\n[data]\nrecord = \"{record}\"\n[observer]\nestimate = [\"x\", \"y\"]\n"
+        );
+        let scene = write(&folder, "a.toml", text);
+        let output = finish(&mut program(&["observe", scene.to_str().unwrap(), "--json"]));
+        assert_eq!(output.status.code(), Some(2), "{record}: {}", words(&output));
+        assert!(message(&output).contains(why), "{model} {record}: {}", words(&output));
+    }
+    let text = "title = \"a\"\nmodel = \"/dev/zero\"\nmeasurements = \"run.csv\"\nerrors = { x = { size = 1 } }\nparameters = { k = { bounds = [1, 2] } }\n[experiments.one]\n";
+    let scene = write(&folder, "b.toml", text);
+    let output = finish(&mut program(&["observe", scene.to_str().unwrap(), "--json"]));
+    assert!(message(&output).contains("is no regular file"), "{}", words(&output));
+}
+
 /// A pipe of the shell's is as good as a file.
 #[test]
 fn a_pipe_that_somebody_writes_to_is_read() {

@@ -6,6 +6,8 @@ mod check;
 mod cost;
 mod inputs;
 mod interrupts;
+mod no_times;
+mod overwritten;
 mod prove;
 mod rank;
 mod shards;

@@ -14,14 +14,14 @@ mod names;
 mod pieces;
 
 use crate::expression::{ForeignExpr, ForeignKind, Span};
-use crate::functions::{constant, takes_one};
+use crate::functions::{constant, names_a_function, takes_one};
 use crate::model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate};
-use crate::script::{Dialect, Parser, Syntax, SyntaxKind, meaning, named_function, tokens};
+use crate::script::{Dialect, Parser, Syntax, SyntaxKind, made_number, meaning, named_function, tokens};
 use headers::{Listed, expressions_in, names_in, without_headers};
 use names::{look_at_others, look_for_unknown, no_left, outputs_by_use};
 use palmistry_io::foreign::Budget;
 use palmistry_lang::{Code, Problem};
-use pieces::{TIME, differentiated, is_equation, symbol, vector};
+use pieces::{LONG_TIME, TIME, differentiated, is_equation, symbol, vector};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Roles of names that the text does not give.
@@ -188,7 +188,18 @@ impl<'b> Reading<'b> {
         matches!(&one.kind, SyntaxKind::Equation("=", left, _) if left.as_name().is_some_and(|name| name.starts_with('@')))
     }
 
+    /// What stands in `SX(@1=sin(x), [@1, y])` or `SX(x*y)`, as CasADi shows it: its shared parts are read, and the last one is what it is.
+    fn unwrapped<'s>(&mut self, one: &'s Syntax) -> Result<&'s Syntax, Problem> {
+        let Some(("SX" | "MX" | "DM", [shared @ .., last])) = named_function(one) else { return Ok(one) };
+        if !shared.iter().all(|part| self.shared_goes_on(part)) {
+            return Ok(one);
+        }
+        shared.iter().try_for_each(|part| self.statement(part))?;
+        Ok(last)
+    }
+
     fn statement(&mut self, one: &Syntax) -> Result<(), Problem> {
+        let one = self.unwrapped(one)?;
         if let Some(("Eq" | "Equality", [left, right])) = named_function(one) {
             return self.equation(left, right);
         }
@@ -225,6 +236,7 @@ impl<'b> Reading<'b> {
     }
 
     fn equation(&mut self, left: &Syntax, right: &Syntax) -> Result<(), Problem> {
+        let right = self.unwrapped(right)?;
         if let Some(state) = differentiated(left) {
             let value = self.value(right)?;
             return self.rate(&state, value, &left.span);
@@ -360,9 +372,30 @@ impl<'b> Reading<'b> {
                     &format!("'{name}' is a number in SymPy"),
                     "write its digits, or name it in a line such as 'known: c'",
                 ),
-                "oo" | "zoo" | "nan" | "inf" | "True" | "False" => {
+                "oo" | "zoo" | "∞" | "True" | "False" | "true" | "false" => {
                     missing(&format!("'{name}' is no number"), "write what is meant")
                 }
+                _ if ["nan", "inf", "infinity"].contains(&name.to_lowercase().as_str()) => {
+                    missing(&format!("'{name}' is no number"), "write what is meant")
+                }
+                // numbers of other programs, that would be symbols of these names here
+                "Pi" | "PI" | "M_PI" => missing(
+                    &format!("'{name}' may be the number pi or a name"),
+                    &format!("write pi, or name it in a line such as 'parameters: {name}'"),
+                ),
+                "ℯ" | "M_E" => missing(
+                    &format!("'{name}' may be Euler's number or a name"),
+                    &format!("write exp(1), or name it in a line such as 'parameters: {name}'"),
+                ),
+                "ⅈ" | "ⅉ" | "im" => missing(
+                    &format!("'{name}' may be the imaginary unit or a name"),
+                    &format!("there are no complex numbers; name it in a line such as 'parameters: {name}'"),
+                ),
+                // exp^(-x), sin^2*x: what it is of stands somewhere else, or nowhere
+                _ if names_a_function(&name) => missing(
+                    &format!("'{name}' is a function, and no bracket stands behind it"),
+                    &format!("write {name}(...), or name it in a line such as 'parameters: {name}'"),
+                ),
                 _ if name.starts_with('@') => {
                     missing(&format!("nothing says what '{name}' is"), "its line says it before")
                 }
@@ -382,10 +415,12 @@ impl<'b> Reading<'b> {
                 )
             }),
             ("Pow", [base, exponent]) => self.value(base).and_then(|base| Ok(base.to(self.value(exponent)?))),
-            ("Integer" | "Float", [Syntax { kind: SyntaxKind::Text(text), span }, ..]) => {
-                ForeignExpr::number(text, span)
+            ("Integer" | "Float", [Syntax { kind: SyntaxKind::Text(text), span: place }, rest @ ..]) => {
+                ForeignExpr::number(text, place).and_then(|value| made_number(name, value, rest, span))
             }
-            ("Integer" | "Float", [value, ..]) => self.value(value),
+            ("Integer" | "Float", [value, rest @ ..]) => {
+                self.value(value).and_then(|value| made_number(name, value, rest, span))
+            }
             ("Derivative" | "diff", _) => {
                 Err(Problem::new(Code::Foreign, span, "a derivative stands in an expression", "this")
                     .help("put its equation in its place: only states may be differentiated, on the left"))
@@ -481,13 +516,25 @@ impl<'b> Reading<'b> {
         model.constants = self.parameters.iter().map(|name| constant(name, true)).collect();
         model.constants.extend(self.known.iter().map(|name| constant(name, false)));
         let names = model.all_names();
-        let is_time = !names.iter().any(|name| name == TIME);
         let listed = model.constants.len();
         model.declare_others(self.parameters.is_empty());
-        let before = model.constants.len();
-        model.constants.retain(|constant| !is_time || constant.name != TIME);
-        if model.constants.len() < before {
-            model.add_clock(TIME);
+        // time by either of its names, where nothing else is called so
+        let is_time = |constant: &ForeignConstant| {
+            [TIME, LONG_TIME].contains(&constant.name.as_str()) && !names.contains(&constant.name)
+        };
+        let clocks: Vec<String> =
+            model.constants.iter().filter(|one| is_time(one)).map(|one| one.name.clone()).collect();
+        if clocks.len() > 1 {
+            let message = format!("'{TIME}' and '{LONG_TIME}' stand in the equations, and both may be time");
+            return Err(Problem::new(Code::Foreign, &(0..text.len().min(1)), message, "the file").help(
+                format!(
+                    "call time {TIME}, or name the other one in a line such as 'parameters: {LONG_TIME}'"
+                ),
+            ));
+        }
+        model.constants.retain(|constant| !is_time(constant));
+        if let Some(clock) = clocks.first() {
+            model.add_clock(clock);
         }
         look_at_others(&mut model, listed, self.parameters.is_empty())?;
         Ok(model)

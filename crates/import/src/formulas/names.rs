@@ -1,6 +1,6 @@
 //! Names of formulas: which are declared, which are functions of time, and which stand in no equation.
 
-use super::pieces::{TIME, is_higher_derivative};
+use super::pieces::{LONG_TIME, TIME, is_higher_derivative};
 use super::{PrintedRoles, Reading};
 use crate::expression::{ForeignExpr, Span};
 use crate::functions::takes_one;
@@ -119,7 +119,7 @@ impl EquationNames {
 pub(super) fn look_for_unknown(output: &ForeignExpr, equations: &EquationNames) -> Result<(), Problem> {
     let mut bad = None;
     output.names(&mut |name, span| {
-        if bad.is_none() && !equations.all.contains(name) && name != TIME {
+        if bad.is_none() && !equations.all.contains(name) && ![TIME, LONG_TIME].contains(&name) {
             bad = Some((name.to_owned(), span.clone()));
         }
     });

@@ -6,6 +6,9 @@ use crate::script::{Syntax, SyntaxKind, named_function};
 /// The name of time where nothing is called so.
 pub(super) const TIME: &str = "t";
 
+/// Its other name, as a symbol by itself: `sin(2*pi*time)`.
+pub(super) const LONG_TIME: &str = "time";
+
 /// The name of `x(t)`, even where a function is called so.
 pub(super) fn signal(syntax: &Syntax) -> Option<String> {
     let SyntaxKind::Call(callee, arguments) = &syntax.kind else { return None };

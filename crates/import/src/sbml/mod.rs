@@ -214,7 +214,7 @@ impl<'b> Reading<'b> {
             .find(|name| !ids.contains(name))
             .unwrap_or("time_of_the_model");
         let mut formulas = Formulas { functions: BTreeMap::new(), time: time.to_owned(), budget };
-        for function in listed(model, "listOfFunctionDefinitions") {
+        for function in in_order(listed(model, "listOfFunctionDefinitions")) {
             let (name, definition) = function_definition(function, &formulas)?;
             formulas.functions.insert(name, definition);
         }
@@ -593,6 +593,42 @@ impl<'b> Reading<'b> {
             None => Ok(()),
         }
     }
+}
+
+/// The functions of a model, each below those that it calls: level 3 has them in any order. Those that go round in a circle stand at the end, and
+/// are refused there.
+fn in_order<'a, 'i>(list: Vec<Node<'a, 'i>>) -> Vec<Node<'a, 'i>> {
+    let by_id: BTreeMap<&str, usize> =
+        list.iter().enumerate().filter_map(|(at, node)| Some((node.attribute("id")?, at))).collect();
+    let calls = |node: &Node<'a, 'i>| -> BTreeSet<usize> {
+        let heads = node.descendants().filter(|one| is(*one, "apply")).filter_map(|one| elements(one).next());
+        heads
+            .filter(|head| is(*head, "ci"))
+            .filter_map(|head| by_id.get(text_of(head).as_str()).copied())
+            .collect()
+    };
+    let mut waiting: Vec<usize> = Vec::new();
+    let mut callers: Vec<Vec<usize>> = vec![Vec::new(); list.len()];
+    for (at, node) in list.iter().enumerate() {
+        let called = calls(node);
+        waiting.push(called.len());
+        called.into_iter().for_each(|other| callers[other].push(at));
+    }
+    // the first of those that wait for none
+    let mut ready: BTreeSet<usize> = (0..list.len()).filter(|at| waiting[*at] == 0).collect();
+    let (mut order, mut placed) = (Vec::new(), BTreeSet::new());
+    while let Some(at) = ready.pop_first() {
+        order.push(list[at]);
+        placed.insert(at);
+        for caller in &callers[at] {
+            waiting[*caller] -= 1;
+            if waiting[*caller] == 0 {
+                ready.insert(*caller);
+            }
+        }
+    }
+    order.extend((0..list.len()).filter(|at| !placed.contains(at)).map(|at| list[at]));
+    order
 }
 
 /// A function of the model: its name, its arguments and what it is of them.

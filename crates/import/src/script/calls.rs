@@ -3,7 +3,7 @@
 use super::super::expression::{ForeignExpr, Span};
 use super::super::functions::{self, constant, is_function};
 use super::forms::{matrix, transposed};
-use super::meaning::{keeps_the_value, named_function};
+use super::meaning::{keeps_the_value, made_number, named_function};
 use super::syntax::{Syntax, SyntaxKind};
 use super::tokens::Dialect;
 use super::values::{Form, MOST_ENTRIES, ScriptValue};
@@ -223,14 +223,38 @@ impl ScriptWorkspace<'_> {
                     Err(entries) => ScriptValue::Many { rows: entries.len(), entries, form: Form::List },
                 })
             }
+            // a number as a text is that number exactly
+            (
+                "Rational" | "S" | "sympify" | "Integer",
+                [Syntax { kind: SyntaxKind::Text(text), span: place }],
+            ) if text.contains('/') || name == "Rational" => {
+                let (top, bottom) = text.split_once('/').unwrap_or((text, "1"));
+                let top = ForeignExpr::number(top.trim(), place)?;
+                let bottom = ForeignExpr::number(bottom.trim(), place)?;
+                let value = top.as_number().zip(bottom.as_number());
+                let value = value.and_then(|(top, bottom)| functions::fraction(top, bottom, span));
+                let value = value.ok_or_else(|| {
+                    Problem::new(Code::Foreign, place, format!("'{text}' is no number"), "this")
+                        .help("write a fraction of two numbers")
+                })?;
+                made_number(name, value, &[], span).map(ScriptValue::One)
+            }
+            ("S" | "sympify", [Syntax { kind: SyntaxKind::Text(text), span: place }])
+                if module.is_some() || self.from_sympy.contains(name) =>
+            {
+                ForeignExpr::number(text.trim(), place).map(ScriptValue::One)
+            }
             ("Rational", [top, bottom]) => {
                 let (top, bottom) = (self.one(top)?, self.one(bottom)?);
                 Ok(ScriptValue::One(top.over(bottom)))
             }
-            ("Integer" | "Float", [value, ..]) => match &value.kind {
-                SyntaxKind::Text(text) => ForeignExpr::number(text, &value.span).map(ScriptValue::One),
-                _ => self.value(value),
-            },
+            ("Integer" | "Float", [value, rest @ ..]) => {
+                let value = match &value.kind {
+                    SyntaxKind::Text(text) => ForeignExpr::number(text, &value.span)?,
+                    _ => self.one(value)?,
+                };
+                made_number(name, value, rest, span).map(ScriptValue::One)
+            }
             ("copy" | "locals", []) => Ok(ScriptValue::Else),
             // of each entry, as MATLAB has it
             (_, [inner]) if is_function(name) => match self.value(inner)? {

@@ -8,6 +8,12 @@ use palmistry_lang::{Code, Problem};
 /// A formula of more cases is refused.
 pub(crate) const MOST_CASES: usize = 2000;
 
+/// A condition of more parts is refused: each nests the case.
+const MOST_PARTS: usize = 40;
+
+/// Values with more parts than these are not written several times.
+const TWICE: usize = 40;
+
 type Meant = Result<ForeignExpr, Problem>;
 
 /// The name and the arguments of a call, whatever module the function is taken from: `exp(x)`, `sym.exp(x)`.
@@ -55,7 +61,7 @@ pub(crate) fn meaning(syntax: &Syntax, special: &mut impl FnMut(&Syntax) -> Opti
             Ok(ForeignExpr::new(kind, span))
         }
         SyntaxKind::Choice(condition, then, otherwise) => choice(condition, then, otherwise, special),
-        SyntaxKind::Compare(..) | SyntaxKind::Not(_) => {
+        SyntaxKind::Compare(..) | SyntaxKind::Not(_) | SyntaxKind::Conditions(..) => {
             // what is true counts as one
             let number = |value: i64| Ok(ForeignExpr::integer(value, span));
             let (one, zero) = (number(1)?, number(0)?);
@@ -124,6 +130,35 @@ fn compared(
             let (left, right) = (meaning(left, special)?, meaning(right, special)?);
             Ok(case(left, order, right, then, otherwise))
         }
+        SyntaxKind::Conditions(all, list) => {
+            if list.len() > MOST_PARTS {
+                let message = format!("a condition of more than {MOST_PARTS} parts");
+                return Err(Problem::new(Code::Foreign, &condition.span, message, "this condition")
+                    .help("write cases within cases"));
+            }
+            // both values would stand there several times: one comparison of a number that is one or zero
+            if then.size() + otherwise.size() > TWICE {
+                let number = |value: i64| ForeignExpr::integer(value, &condition.span);
+                let holds = compared(condition, number(1), number(0), special)?;
+                let half = number(1).over(number(2));
+                return Ok(case(holds, ForeignOrder::Greater, half, then, otherwise));
+            }
+            let mut value = if *all { then.clone() } else { otherwise.clone() };
+            for part in list.iter().rev() {
+                value = match *all {
+                    true => compared(part, value, otherwise.clone(), special)?,
+                    false => compared(part, then.clone(), value, special)?,
+                };
+            }
+            Ok(value)
+        }
+        // several conditions that have a name
+        SyntaxKind::Name(_) | SyntaxKind::Call(..) if matches!(special(condition), Some(Ok(value)) if is_flag(&value, true)) =>
+        {
+            let Some(Ok(value)) = special(condition) else { return Err(unread(&condition.span)) };
+            let number = |value: i64| ForeignExpr::integer(value, &condition.span);
+            Ok(case(value, ForeignOrder::Greater, number(1).over(number(2)), then, otherwise))
+        }
         // a condition that has a name: CasADi's @1, one where it holds and zero elsewhere, or the other way about
         SyntaxKind::Name(_) => match special(condition) {
             Some(Ok(ForeignExpr { kind: ForeignKind::Case { sides, order, values }, .. })) => {
@@ -147,9 +182,25 @@ fn compared(
     }
 }
 
+/// Whether a value is nothing but one and zero by conditions within conditions, of which one alone is none of its values.
+fn is_flag(value: &ForeignExpr, outermost: bool) -> bool {
+    match &value.kind {
+        ForeignKind::Number(number) => {
+            !outermost && (*number == dashu::rational::RBig::ONE || *number == dashu::rational::RBig::ZERO)
+        }
+        ForeignKind::Case { values, .. } => {
+            let is_nested = |value: &ForeignExpr| matches!(value.kind, ForeignKind::Case { .. });
+            (!outermost || is_nested(&values.0) || is_nested(&values.1))
+                && is_flag(&values.0, false)
+                && is_flag(&values.1, false)
+        }
+        _ => false,
+    }
+}
+
 fn unread(span: &Span) -> Problem {
     Problem::new(Code::Foreign, span, "this condition cannot be read", "this")
-        .help("one comparison with '<', '<=', '>' or '>='")
+        .help("comparisons with '<', '<=', '>' or '>=', joined by '&' and '|'")
 }
 
 fn order(sign: &str) -> Option<ForeignOrder> {
@@ -186,6 +237,39 @@ fn function(syntax: &Syntax, special: &mut impl FnMut(&Syntax) -> Option<Meant>)
             call(name, values, &syntax.span)
         }
     }
+}
+
+/// `Integer(2)` and `Float('0.1', 15)` of SymPy, as the numbers that they are: `Integer` cuts off what stands behind the point, and a `Float` of few
+/// digits is another number, so these are refused.
+pub(crate) fn made_number(name: &str, value: ForeignExpr, rest: &[Syntax], span: &Span) -> Meant {
+    let refused =
+        |message: String, help: &str| Err(Problem::new(Code::Foreign, span, message, "this").help(help));
+    let Some(number) = value.exact(&|_| None) else {
+        return refused(
+            format!("'{name}' of what is no number"),
+            "write the number, or the expression alone",
+        );
+    };
+    if name == "Integer" && !number.is_int() {
+        return refused(
+            "'Integer' of a number that is no whole one cuts off what stands behind the point".to_owned(),
+            "write the whole number that is meant, or Rational(27, 10) for 2.7",
+        );
+    }
+    for one in rest {
+        let (digits, fewest) = match &one.kind {
+            SyntaxKind::Equation("=", word, digits) => {
+                (digits.as_ref(), if word.as_name() == Some("precision") { 50 } else { 15 })
+            }
+            _ => (one, 15),
+        };
+        if !matches!(&digits.kind, SyntaxKind::Number(digits) if *digits >= dashu::rational::RBig::from(fewest))
+        {
+            let message = format!("'{name}' of so few digits is another number");
+            return refused(message, "write all digits that are meant, without the number of them");
+        }
+    }
+    Ok(ForeignExpr { span: span.clone(), ..value })
 }
 
 /// Whether a call changes the form of its argument and not the value: a function of SymPy, by its module (`sym.factor(x)`). By the name

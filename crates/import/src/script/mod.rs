@@ -11,7 +11,7 @@ mod tokens;
 mod values;
 mod workspace;
 
-pub(super) use meaning::{MOST_CASES, meaning, named_function};
+pub(super) use meaning::{MOST_CASES, made_number, meaning, named_function};
 pub(super) use parser::Parser;
 pub(super) use syntax::{Syntax, SyntaxKind};
 pub(super) use tokens::{Dialect, Token, TokenKind, tokens};

@@ -185,7 +185,7 @@ impl<'a> Parser<'a> {
     }
 
     fn choice(&mut self) -> Parsed {
-        let first = self.comparison()?;
+        let first = self.conditions()?;
         if self.dialect != Dialect::Matlab && self.operator(&["?"]).is_some() {
             self.next();
             let then = self.expression()?;
@@ -200,7 +200,7 @@ impl<'a> Parser<'a> {
             && !self.line_ends(self.peek())
         {
             self.next();
-            let condition = self.comparison()?;
+            let condition = self.conditions()?;
             if !self.peek().is_word("else") {
                 return Err(self.unexpected("'else'"));
             }
@@ -213,19 +213,109 @@ impl<'a> Parser<'a> {
         Ok(first)
     }
 
+    /// Conditions with `or` between them, of which each may be several with `and`.
+    fn conditions(&mut self) -> Parsed {
+        let (any, all): (&[&'static str], &[&'static str]) = match self.dialect {
+            // where they hold together like sums do, or less
+            Dialect::Matlab => (&["||", "|"], &["&&", "&"]),
+            _ => (&["||"], &["&&"]),
+        };
+        self.several(any, "or", false, |parser| parser.several(all, "and", true, Parser::comparison))
+    }
+
+    /// Parts with one of some signs between them, or a word.
+    fn several(
+        &mut self,
+        signs: &[&'static str],
+        word: &str,
+        all: bool,
+        part: impl Fn(&mut Self) -> Parsed,
+    ) -> Parsed {
+        let first = part(self)?;
+        let by_word = matches!(self.dialect, Dialect::Python | Dialect::Printed);
+        let begin = first.span.clone();
+        let mut list = vec![first];
+        loop {
+            let goes_on = by_word && self.peek().is_word(word) && !self.line_ends(self.peek());
+            if !goes_on && self.operator(signs).is_none() {
+                break;
+            }
+            self.next();
+            list.push(part(self)?);
+        }
+        match (list.len(), list.pop()) {
+            (1, Some(only)) => Ok(only),
+            (_, Some(last)) => {
+                let end = last.span.end;
+                list.push(last);
+                Ok(joined(SyntaxKind::Conditions(all, list), &begin, end))
+            }
+            (_, None) => Err(self.unexpected("a condition")),
+        }
+    }
+
+    /// A sum, or conditions in brackets with `&` and `|` between them: these signs bind as a product and a sum do, but in MATLAB.
+    fn operand(&mut self) -> Parsed {
+        let first = self.sum()?;
+        if self.dialect == Dialect::Matlab || self.operator(&["&", "|"]).is_none() {
+            return Ok(first);
+        }
+        let begin = first.span.clone();
+        // those that hold together, and what stands between such
+        let mut any = vec![vec![self.in_brackets(first)?]];
+        while let Some(sign) = self.operator(&["&", "|"]) {
+            self.next();
+            let next = self.sum()?;
+            let next = self.in_brackets(next)?;
+            match any.last_mut().filter(|_| sign == "&") {
+                Some(all) => all.push(next),
+                None => any.push(vec![next]),
+            }
+        }
+        let end = self.tokens[self.at - 1].span.end;
+        let several = |all: bool, mut list: Vec<Syntax>| match (list.len(), list.pop()) {
+            (1, Some(only)) => only,
+            (_, last) => {
+                list.extend(last);
+                joined(SyntaxKind::Conditions(all, list), &begin, end)
+            }
+        };
+        let list = any.into_iter().map(|list| several(true, list)).collect();
+        Ok(several(false, list))
+    }
+
+    /// A condition that holds together.
+    fn in_brackets(&self, one: Syntax) -> Parsed {
+        match one.kind {
+            SyntaxKind::Compare(..)
+            | SyntaxKind::Conditions(..)
+            | SyntaxKind::Not(_)
+            | SyntaxKind::Name(_)
+            | SyntaxKind::Call(..) => Ok(one),
+            _ => Err(Problem::new(Code::ForeignText, &one.span, "this is no condition", "here")
+                .help("each condition beside '&' and '|' has brackets of its own: (x > 0) & (x < 1)")),
+        }
+    }
+
     fn comparison(&mut self) -> Parsed {
-        let left = self.sum()?;
-        let Some(sign) = self.operator(&["<", "<=", ">", ">=", "==", "!=", "~="]) else { return Ok(left) };
+        const SIGNS: [&str; 7] = ["<", "<=", ">", ">=", "==", "!=", "~="];
+        let left = self.operand()?;
+        let Some(sign) = self.operator(&SIGNS) else { return Ok(left) };
         self.next();
-        let right = self.sum()?;
-        if self.operator(&["<", "<=", ">", ">=", "==", "!=", "~=", "&&", "||", "&", "|"]).is_some() {
+        let right = self.operand()?;
+        if self.operator(&SIGNS).is_some() {
             return Err(Problem::new(
                 Code::ForeignText,
                 &self.peek().span,
                 "conditions of several parts are not read",
                 "here",
             )
-            .help("write cases within cases, each with one comparison"));
+            .help("write each comparison by itself: (0 < x) & (x < 1)"));
+        }
+        let is_condition = |one: &Syntax| matches!(one.kind, SyntaxKind::Conditions(..));
+        if is_condition(&left) || is_condition(&right) {
+            return Err(Problem::new(Code::ForeignText, &left.span, "a condition is compared", "here")
+                .help("each condition beside '&' and '|' has brackets of its own: (x > 0) & (x < 1)"));
         }
         let sign = if sign == "~=" { "!=" } else { sign };
         let (begin, end) = (left.span.clone(), right.span.end);

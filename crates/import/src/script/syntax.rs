@@ -26,6 +26,8 @@ pub(crate) enum SyntaxKind {
     /// `<`, `<=`, `>`, `>=`, `==` or `!=` of two.
     Compare(&'static str, Box<Syntax>, Box<Syntax>),
     Not(Box<Syntax>),
+    /// Conditions of which all hold, where that is `true`, or any.
+    Conditions(bool, Vec<Syntax>),
     /// A condition, the value where it holds, and the value elsewhere.
     Choice(Box<Syntax>, Box<Syntax>, Box<Syntax>),
     Call(Box<Syntax>, Vec<Syntax>),
@@ -49,6 +51,37 @@ impl Syntax {
         match &self.kind {
             SyntaxKind::Name(name) => Some(name),
             _ => None,
+        }
+    }
+
+    /// Calls `each` for it and for every part of it.
+    pub fn each(&self, each: &mut impl FnMut(&Syntax)) {
+        each(self);
+        match &self.kind {
+            SyntaxKind::Name(_) | SyntaxKind::Number(_) | SyntaxKind::Text(_) => {}
+            SyntaxKind::Sum(list) | SyntaxKind::Product(list) | SyntaxKind::Pointwise(list) => {
+                list.iter().for_each(|(_, one)| one.each(each));
+            }
+            SyntaxKind::Power(a, b) | SyntaxKind::Compare(_, a, b) | SyntaxKind::Equation(_, a, b) => {
+                a.each(each);
+                b.each(each);
+            }
+            SyntaxKind::Choice(a, b, c) => [a, b, c].into_iter().for_each(|one| one.each(each)),
+            SyntaxKind::Not(inner) | SyntaxKind::Prime(inner) | SyntaxKind::Member(inner, _) => {
+                inner.each(each)
+            }
+            SyntaxKind::Call(callee, list) | SyntaxKind::Index(callee, list) => {
+                callee.each(each);
+                list.iter().for_each(|one| one.each(each));
+            }
+            SyntaxKind::List(list) | SyntaxKind::Conditions(_, list) => {
+                list.iter().for_each(|one| one.each(each));
+            }
+            SyntaxKind::Rows(rows) => rows.iter().flatten().for_each(|one| one.each(each)),
+            SyntaxKind::Pairs(pairs) => pairs.iter().for_each(|(a, b)| {
+                a.each(each);
+                b.each(each);
+            }),
         }
     }
 
@@ -77,7 +110,7 @@ impl Syntax {
                 callee.names(each);
                 list.iter().for_each(|one| one.names(each));
             }
-            SyntaxKind::List(list) => all(list),
+            SyntaxKind::List(list) | SyntaxKind::Conditions(_, list) => all(list),
             SyntaxKind::Rows(rows) => rows.iter().for_each(|row| all(row)),
             SyntaxKind::Pairs(pairs) => pairs.iter().for_each(|(a, b)| {
                 a.names(each);

@@ -42,6 +42,8 @@ pub(crate) struct ScriptWorkspace<'b> {
     pub(super) dialect: Dialect,
     /// Arguments of a function whose elements are symbols, with what is used of them.
     pub open: BTreeMap<String, OpenArgument>,
+    /// Definitions that are made of whole arguments.
+    of_whole: BTreeSet<String>,
     /// Names that Python takes from modules that are not read, each with the module.
     pub elsewhere: BTreeMap<String, String>,
     /// Names that Python takes from SymPy.
@@ -59,6 +61,7 @@ impl<'b> ScriptWorkspace<'b> {
             budget,
             dialect,
             open: BTreeMap::new(),
+            of_whole: BTreeSet::new(),
             elsewhere: BTreeMap::new(),
             from_sympy: BTreeSet::new(),
             functions: BTreeMap::new(),
@@ -96,6 +99,11 @@ impl<'b> ScriptWorkspace<'b> {
     /// Whether a name stands for several numbers, or for something that could not be read.
     pub fn holds_a_list(&self, name: &str) -> bool {
         matches!(self.bound.get(name), Some(Ok(ScriptValue::Many { .. }) | Err(_)))
+    }
+
+    /// Whether a name stands for a number or something else that is known.
+    pub fn is_bound(&self, name: &str) -> bool {
+        matches!(self.bound.get(name), Some(Ok(ScriptValue::One(_) | ScriptValue::Many { .. }) | Err(_)))
     }
 
     /// Pays for what looks at many things.
@@ -163,6 +171,9 @@ impl<'b> ScriptWorkspace<'b> {
                 if let Some(number) = self.whole(&one) {
                     self.wholes.insert(own.clone(), number);
                 }
+                if self.whole_argument(&one).is_some() {
+                    self.of_whole.insert(own.clone());
+                }
                 self.defined.insert(own.clone());
                 count_names(&mut self.used, &one, true);
                 self.definitions.push((own.clone(), one));
@@ -180,6 +191,43 @@ impl<'b> ScriptWorkspace<'b> {
             value.parts().iter().for_each(|one| count_names(&mut own, one, true));
         }
         self.used.get(symbol).copied().unwrap_or(0) > own.get(symbol).copied().unwrap_or(0)
+    }
+
+    /// The argument of the function that stands as a whole in an expression, if one does.
+    fn whole_argument(&self, of: &ForeignExpr) -> Option<String> {
+        let mut found = None;
+        if !self.open.is_empty() {
+            of.names(&mut |name, _| {
+                if found.is_none() && (self.open.contains_key(name) || self.of_whole.contains(name)) {
+                    found = Some(name.to_owned());
+                }
+            });
+        }
+        found
+    }
+
+    /// Refuses an argument as a whole beside a matrix: it may be a matrix itself, and would be taken for one number.
+    fn refuse_whole_beside(
+        &self,
+        left: &ScriptValue,
+        right: &ScriptValue,
+        span: &Span,
+    ) -> Result<(), Problem> {
+        let ((ScriptValue::One(one), ScriptValue::Many { .. })
+        | (ScriptValue::Many { .. }, ScriptValue::One(one))) = (left, right)
+        else {
+            return Ok(());
+        };
+        match self.whole_argument(one) {
+            Some(name) => {
+                let message = format!(
+                    "'{name}' is used as a whole beside a matrix: it may be a number, a vector or a matrix"
+                );
+                Err(Problem::new(Code::Foreign, span, message, "here")
+                    .help("write the elements of the arguments of the function: x(1), x(2), p(1)"))
+            }
+            None => Ok(()),
+        }
     }
 
     /// The value of an expression.
@@ -214,6 +262,9 @@ impl<'b> ScriptWorkspace<'b> {
                 let mut sum: Option<ScriptValue> = None;
                 for (subtracted, term) in terms {
                     let term = self.value(term)?;
+                    if let Some(sum) = &sum {
+                        self.refuse_whole_beside(sum, &term, span)?;
+                    }
                     sum = Some(match sum {
                         None if *subtracted => each(term, |one| one.negative()),
                         None => term,
@@ -228,6 +279,9 @@ impl<'b> ScriptWorkspace<'b> {
                 let mut product: Option<ScriptValue> = None;
                 for (divided, factor) in factors {
                     let factor = self.value(factor)?;
+                    if let Some(product) = &product {
+                        self.refuse_whole_beside(product, &factor, span)?;
+                    }
                     product = Some(match (product, factor) {
                         (None, factor) => factor,
                         (Some(list), ScriptValue::One(times)) | (Some(ScriptValue::One(times)), list)
@@ -244,6 +298,9 @@ impl<'b> ScriptWorkspace<'b> {
                 let mut product: Option<ScriptValue> = None;
                 for (divided, factor) in factors {
                     let factor = self.value(factor)?;
+                    if let Some(product) = &product {
+                        self.refuse_whole_beside(product, &factor, span)?;
+                    }
                     product = Some(match product {
                         None => factor,
                         Some(product) => {

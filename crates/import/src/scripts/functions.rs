@@ -80,6 +80,18 @@ impl Script<'_> {
                 "assign its rates",
             ));
         }
+        let is_whole = |name: &String| self.workspace.open.get(name).is_some_and(|used| used.whole);
+        let whole: Vec<&String> =
+            head.others.iter().chain([&head.state]).filter(|name| is_whole(name)).collect();
+        if let ([other, ..], true) = (whole.as_slice(), is_whole(&head.state))
+            && **other != head.state
+        {
+            let message = format!(
+                "'{}' and '{other}' are used as a whole: they may be numbers, vectors or matrices",
+                head.state
+            );
+            return Err(refused(message, &format!("write their elements: {}(1), {other}(1)", head.state)));
+        }
         let mut model =
             ForeignModel { definitions: self.workspace.definitions.clone(), ..ForeignModel::default() };
         for name in head.others.iter().chain([&head.state]) {
@@ -131,10 +143,21 @@ impl Script<'_> {
                 model.add_clock(time);
             }
         }
-        model.remarks.push(format!(
-            "elements of the arguments of the function are symbols: {}(1) is {}1",
-            head.state, head.state
-        ));
+        if !whole.is_empty() {
+            let list = whole.iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ");
+            model.remarks.push(format!("used as a whole, and read as one number each: {list}"));
+        }
+        let has_elements = head
+            .others
+            .iter()
+            .chain([&head.state])
+            .any(|name| self.workspace.open.get(name).is_some_and(|used| !used.numbers.is_empty()));
+        if has_elements {
+            model.remarks.push(format!(
+                "elements of the arguments of the function are symbols: {}(1) is {}1",
+                head.state, head.state
+            ));
+        }
         Ok(model)
     }
 }

@@ -1,5 +1,6 @@
 //! Lists of Python that are changed in place, and names that stand for one list.
 
+use super::super::expression::Span;
 use super::super::script::{Dialect, Form, ScriptValue, Syntax, SyntaxKind};
 use super::Script;
 use crate::script::Parser;
@@ -7,6 +8,32 @@ use palmistry_lang::{Code, Problem};
 
 /// Modules whose functions are known by their names.
 const KNOWN: [&str; 7] = ["sympy", "numpy", "math", "casadi", "scipy", "__future__", "strikepy"];
+
+/// What changes a list, or a matrix of SymPy, in its place.
+const CHANGING: [&str; 22] = [
+    "append",
+    "extend",
+    "insert",
+    "pop",
+    "remove",
+    "sort",
+    "reverse",
+    "clear",
+    "row_del",
+    "col_del",
+    "row_swap",
+    "col_swap",
+    "row_op",
+    "col_op",
+    "zip_row_op",
+    "fill",
+    "copyin_list",
+    "copyin_matrix",
+    "simplify",
+    "itemset",
+    "resize",
+    "put",
+];
 
 impl Script<'_> {
     /// Makes a name that is assigned to one of those of a list, or of a list of its own.
@@ -20,6 +47,9 @@ impl Script<'_> {
                     *groups
                 });
                 self.aliases.insert(name.to_owned(), group);
+                if self.within.contains(other) {
+                    self.within.insert(name.to_owned());
+                }
             }
             None if right.as_name() == Some(name) => {}
             None => {
@@ -62,11 +92,23 @@ impl Script<'_> {
     pub(super) fn changed_in_place(&mut self, call: &Syntax) -> Result<bool, Problem> {
         let SyntaxKind::Call(callee, arguments) = &call.kind else { return Ok(false) };
         let SyntaxKind::Member(list, method) = &callee.kind else { return Ok(false) };
+        // one of several names that a list was assigned to: its list is not kept
+        if let Some(name) = list.as_name()
+            && self.dialect == Dialect::Python
+            && CHANGING.contains(&method.as_str())
+            && self.workspace.is_bound(name)
+            && !self.workspace.holds_a_list(name)
+        {
+            let message = format!("'{name}' is changed by '{method}', and is no list that is known");
+            return Err(Problem::new(Code::Foreign, &call.span, message, "this")
+                .help("assign the whole list at once"));
+        }
         let Some(name) = list.as_name().filter(|name| self.workspace.holds_a_list(name)).map(str::to_owned)
         else {
             return Ok(false);
         };
         let Some(Ok(before)) = self.workspace.get(&name) else { return Ok(true) };
+        self.refuse_shared(&name, &call.span)?;
         let more = match (method.as_str(), arguments.as_slice()) {
             ("append", [one]) => {
                 let part = self.workspace.value(one)?;
@@ -86,6 +128,9 @@ impl Script<'_> {
         };
         match more {
             Some(more) => {
+                for one in arguments {
+                    self.note_lists_within(None, one, &more);
+                }
                 let value = self.workspace.chained(before, more, &call.span)?;
                 self.workspace.bind(&name, value);
                 self.share(&name)?;
@@ -97,6 +142,130 @@ impl Script<'_> {
             }
         }
         Ok(true)
+    }
+
+    /// Keeps in mind which names stand for a list that is an element of another one now: `h = [row, [x2]]`, `r = f[0]`, `h.append(row)`. Their
+    /// elements are copied here, and are one thing in Python.
+    pub(super) fn note_lists_within(&mut self, name: Option<&str>, right: &Syntax, value: &ScriptValue) {
+        let is_list = self.dialect == Dialect::Python && matches!(value, ScriptValue::Many { .. });
+        if let Some(name) = name.filter(|name| right.as_name() != Some(*name)) {
+            self.within.remove(name);
+        }
+        if !is_list {
+            return;
+        }
+        let mut found = Vec::new();
+        self.lists_within(right, name.is_none(), &mut found);
+        // an element of a list of lists by a name of its own
+        if let (Some(name), SyntaxKind::Index(..)) = (name, &right.kind) {
+            found.push(name.to_owned());
+        }
+        // of numpy's arrays rows, and arrays that are turned round, are views: each changes with the other
+        if let (Some(name), ScriptValue::Many { form: Form::Array | Form::Vector, .. }) = (name, value)
+            && let SyntaxKind::Index(inner, _) | SyntaxKind::Member(inner, _) = &right.kind
+            && let Some(inner) = inner.as_name()
+        {
+            found.extend([name.to_owned(), inner.to_owned()]);
+        }
+        for own in found {
+            self.within.extend(self.others(&own).unwrap_or_default());
+            self.within.insert(own);
+        }
+    }
+
+    /// The names of lists that are elements of a list which an expression makes.
+    fn lists_within(&self, of: &Syntax, is_element: bool, found: &mut Vec<String>) {
+        match &of.kind {
+            SyntaxKind::Name(name) if is_element && self.workspace.holds_a_list(name) => {
+                found.push(name.clone());
+            }
+            SyntaxKind::List(list) => list.iter().for_each(|one| self.lists_within(one, true, found)),
+            SyntaxKind::Sum(list) | SyntaxKind::Product(list) => {
+                list.iter().for_each(|(_, one)| self.lists_within(one, is_element, found));
+            }
+            SyntaxKind::Choice(_, then, otherwise) => {
+                self.lists_within(then, is_element, found);
+                self.lists_within(otherwise, is_element, found);
+            }
+            _ => {}
+        }
+    }
+
+    /// Refuses to change a list that is an element of another one.
+    pub(super) fn refuse_shared(&self, name: &str, place: &Span) -> Result<(), Problem> {
+        if !self.within.contains(name) {
+            return Ok(());
+        }
+        let message =
+            format!("'{name}' is changed here, and is an element of another list, which changes with it");
+        Err(Problem::new(Code::Foreign, place, message, "this change")
+            .help("assign whole lists, each at once"))
+    }
+
+    /// Refuses calls that change a list within an expression, `last = h.pop()`, and such that change one without a name of its own,
+    /// `f[0].append(x)`. The outermost call of a statement by itself is looked at elsewhere.
+    pub(super) fn refuse_changes_within(&mut self, of: &Syntax, by_itself: bool) -> Result<(), Problem> {
+        if self.dialect != Dialect::Python {
+            return Ok(());
+        }
+        let mut found: Option<(String, Span)> = None;
+        let mut lists = Vec::new();
+        of.each(&mut |part| {
+            let SyntaxKind::Call(callee, arguments) = &part.kind else { return };
+            // what a function that is not read does with a list, nobody knows
+            if let Some(function) =
+                callee.as_name().filter(|name| self.workspace.elsewhere.contains_key(*name))
+            {
+                for one in arguments.iter().filter_map(Syntax::as_name) {
+                    if self.workspace.holds_a_list(one) {
+                        lists.push((one.to_owned(), function.to_owned(), part.span.clone()));
+                    }
+                }
+            }
+            let SyntaxKind::Member(list, method) = &callee.kind else { return };
+            let is_outermost = by_itself && part.span == of.span && list.as_name().is_some();
+            let is_list = list.as_name().is_none_or(|name| self.workspace.holds_a_list(name));
+            if !is_outermost && is_list && CHANGING.contains(&method.as_str()) && found.is_none() {
+                found = Some((method.clone(), part.span.clone()));
+            }
+        });
+        if let Some((method, span)) = found {
+            let message = format!("a list is changed by '{method}' within an expression, which is not read");
+            return Err(Problem::new(Code::Foreign, &span, message, "this").help(
+                "write the change as a line of its own: h.append(x), or assign the whole list at once",
+            ));
+        }
+        for (name, function, span) in lists {
+            let message = format!("'{name}' may be changed by '{function}', which is not read");
+            let why = Problem::new(Code::Foreign, &span, message, "this");
+            self.break_list(&name, &why.help("assign the whole list at once"))?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a change of a list in a line that is not read: `print(h.pop())`.
+    pub(super) fn refuse_changes_among(&self, parser: &mut Parser<'_>, begin: usize) -> Result<(), Problem> {
+        let end = parser.position();
+        parser.go_to(begin);
+        let mut found = None;
+        while parser.position() < end {
+            let (name, dot, method) = (parser.next(), parser.peek(), parser.ahead(1));
+            let is_list = self.workspace.holds_a_list(&name.text) || name.is("]") || name.is(")");
+            if is_list
+                && dot.is(".")
+                && CHANGING.contains(&method.text.as_str())
+                && self.dialect == Dialect::Python
+            {
+                found.get_or_insert((method.text.clone(), method.span.clone()));
+            }
+        }
+        match found {
+            Some((method, span)) => {
+                let message = format!("a list is changed by '{method}' within a line that is not read");
+                Err(Problem::new(Code::Foreign, &span, message, "this").help("assign the whole list at once"))
+            }
+            None => Ok(()),
+        }
     }
 
     /// `from module import a, b as c`: names of modules that are not read.

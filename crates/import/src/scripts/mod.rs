@@ -9,8 +9,8 @@ mod model;
 use super::expression::Span;
 use super::model::ForeignModel;
 use super::script::{
-    Dialect, Parser, ScriptValue, ScriptWorkspace, Syntax, SyntaxKind, Token, TokenKind, named_function,
-    tokens,
+    Dialect, Form, Parser, ScriptValue, ScriptWorkspace, Syntax, SyntaxKind, Token, TokenKind,
+    named_function, tokens,
 };
 use palmistry_io::foreign::Budget;
 use palmistry_lang::{Code, Problem};
@@ -67,6 +67,7 @@ pub(super) fn read(
         at_save: None,
         aliases: BTreeMap::new(),
         groups: 0,
+        within: BTreeSet::new(),
         function: None,
     };
     script.workspace.plain.extend(VARIABLES.map(str::to_owned));
@@ -109,6 +110,8 @@ struct Script<'b> {
     /// Names of Python that stand for one list, by a number of that list.
     aliases: BTreeMap<String, u64>,
     groups: u64,
+    /// Names whose list is an element of another list, or may be: what changes it changes the other.
+    within: BTreeSet<String>,
     /// The function that the file is, if it is one.
     function: Option<functions::Head>,
 }
@@ -166,8 +169,9 @@ impl Script<'_> {
                 .help("write what it does as plain assignments to x, p, h, f, u and w"));
         }
         if word.is_word("import") && self.dialect == Dialect::Python || ignored && !parser.ahead(1).is("=") {
+            let begin = parser.position();
             self.skip_line(parser);
-            return Ok(());
+            return self.refuse_changes_among(parser, begin);
         }
         if word.is_word("syms") && self.dialect == Dialect::Matlab {
             return self.symbols(parser);
@@ -186,6 +190,10 @@ impl Script<'_> {
             parser.next();
             targets.push(parser.expression()?);
         }
+        for target in &targets {
+            let by_itself = targets.len() == 1 && !parser.peek().is("=");
+            self.refuse_changes_within(target, by_itself)?;
+        }
         if !parser.take("=") {
             if let [only] = targets.as_slice()
                 && self.changed_in_place(only)?
@@ -193,7 +201,7 @@ impl Script<'_> {
                 return Ok(());
             }
             return match targets.as_slice() {
-                // a call for its own sake changes nothing that is read here
+                // a call for its own sake changes nothing that is read here, but the lists that it is given
                 [only] if named_function(only).is_some_and(|(name, _)| !VARIABLES.contains(&name)) => Ok(()),
                 [only] if matches!(only.kind, SyntaxKind::Text(_) | SyntaxKind::Name(_)) => Ok(()),
                 _ => Err(parser.unexpected("'='")),
@@ -201,6 +209,7 @@ impl Script<'_> {
         }
         self.begin.get_or_insert(targets[0].span.start);
         let right = self.right_side(parser)?;
+        self.refuse_changes_within(&right, false)?;
         // a = b = 0
         let mut chain = vec![targets];
         let mut right = right;
@@ -364,6 +373,7 @@ impl Script<'_> {
             && target.as_name().is_none()
             && let Some((name, at, down)) = self.element(target)?
         {
+            self.refuse_shared(&name, &target.span)?;
             match self.workspace.value(right).map(ScriptValue::entries) {
                 Ok(Some(entries)) if entries.len() == 1 => {
                     for value in entries {
@@ -392,8 +402,15 @@ impl Script<'_> {
             .collect::<Result<Vec<_>, _>>()?;
         match (self.workspace.value(right), names.as_slice()) {
             (Ok(value), [name]) => {
+                self.note_lists_within(Some(name), right, &value);
                 self.name_list(name, right, &value);
                 self.workspace.assign(name, value);
+            }
+            // each of the names would stand for a list
+            (Ok(ScriptValue::Many { form: Form::Rows | Form::Array, .. }), _) => {
+                let message = "several lists are assigned to several names";
+                return Err(Problem::new(Code::Foreign, &right.span, message, "these values")
+                    .help("write an assignment each, in a line of its own"));
             }
             (Ok(value), names) => {
                 let entries = value.entries().unwrap_or_default();

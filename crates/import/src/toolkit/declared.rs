@@ -4,6 +4,7 @@ use crate::script::{Dialect, Parser, Syntax, SyntaxKind, Token, TokenKind};
 use dashu::rational::RBig;
 use palmistry_lang::{Code, Problem};
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 /// What the declarations of a file say.
 #[derive(Default)]
@@ -17,6 +18,8 @@ pub(super) struct Declared {
     pub times: BTreeSet<String>,
     /// Names without a bracket among the variables, that are no time.
     pub bare: BTreeSet<String>,
+    /// The tokens of the declarations.
+    pub blocks: Vec<Range<usize>>,
     /// What differentiates by time: names, and how often.
     operators: BTreeMap<String, usize>,
 }
@@ -64,6 +67,7 @@ impl Declared {
                 let one = parser.argument()?;
                 declared.declare(&one, is_parameter, is_time)?;
             }
+            declared.blocks.push(at..parser.position());
         }
         declared.look_for_operators(words)?;
         // `@parameters t` of older files declares time, and no constant

@@ -1,6 +1,7 @@
 //! Models of ModelingToolkit.jl, as StructuralIdentifiability.jl takes them: `@parameters`, `@variables`, `D(x) ~ ...` and
 //! `measured_quantities = [y ~ x]`.
 
+mod assigned;
 mod declared;
 mod systems;
 
@@ -10,6 +11,7 @@ use super::functions::constant;
 use super::model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate};
 use super::print::same;
 use super::script::{Syntax, SyntaxKind, Token, meaning};
+use assigned::{assignments, refuse_assigned, refuse_changed};
 use dashu::rational::RBig;
 use declared::Declared;
 use palmistry_io::foreign::Budget;
@@ -35,14 +37,20 @@ pub(super) fn read(
     }
     refuse_steps(words)?;
     refuse_unread(words)?;
-    let (which, remark) = systems::chosen(words, &lists, &declared, which, budget)?;
+    let assigned = assignments(words, &declared);
+    refuse_assigned(words, &assigned, &declared, &lists)?;
+    refuse_changed(words, &lists)?;
+    let file = systems::File { words, lists: &lists, assigned: &assigned, budget };
+    let (which, remark) = systems::chosen(&file, &declared, which)?;
     let mut model = ForeignModel::default();
     model.remarks.extend(remark);
     let begin = words.iter().find(|word| word.is("@")).map_or(0, |word| word.span.start);
     model.source = super::heading(text, comments, begin);
     let equations = || which.iter().flat_map(|at| &lists[*at].list);
     let functions = FileFunctions::of(words);
-    let mut reading = Reading { declared: &declared, functions: &functions, orders: BTreeMap::new() };
+    let names = assigned.iter().map(|one| words[one.name].text.as_str()).collect();
+    let mut reading =
+        Reading { declared: &declared, functions: &functions, assigned: names, orders: BTreeMap::new() };
     reading.look_at_orders(equations())?;
     let mut defined: BTreeMap<String, ForeignExpr> = BTreeMap::new();
     let mut order = Vec::new();
@@ -209,6 +217,8 @@ fn sides(equation: &Syntax) -> Result<(&Syntax, &Syntax), Problem> {
 struct Reading<'f> {
     declared: &'f Declared,
     functions: &'f FileFunctions,
+    /// Names that something is assigned to: declaring them would make another model.
+    assigned: BTreeSet<&'f str>,
     /// Which derivative of a variable the equations give.
     orders: BTreeMap<String, usize>,
 }
@@ -276,6 +286,10 @@ impl Reading<'_> {
                         false if self.declared.bare.contains(name) => (
                             format!("'{name}' is no function of time"),
                             "declare it with @parameters, or as a function of time",
+                        ),
+                        false if self.assigned.contains(name.as_str()) => (
+                            format!("'{name}' is assigned to in the file, and assignments are not read"),
+                            "write what is assigned in its place, or under @parameters with its value",
                         ),
                         false => (
                             format!("'{name}' is declared neither as a parameter nor as a variable"),

@@ -1,16 +1,18 @@
 //! Lists of equations, and which of them a system is made of.
 
+use super::assigned::{Assignment, closing};
 use super::declared::Declared;
 use crate::script::{Dialect, Parser, Syntax, SyntaxKind, Token, TokenKind};
 use palmistry_io::foreign::Budget;
 use palmistry_lang::{Code, Problem};
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 /// A list of equations, and what it is assigned to.
 pub(super) struct Equations {
     pub name: Option<String>,
     /// The token with which it begins.
-    at: usize,
+    pub at: usize,
     pub list: Vec<Syntax>,
 }
 
@@ -155,22 +157,30 @@ struct Made {
     lists: BTreeSet<usize>,
 }
 
+/// What a system is looked for in.
+pub(super) struct File<'f> {
+    pub words: &'f [Token],
+    pub lists: &'f [Equations],
+    pub assigned: &'f [Assignment],
+    pub budget: &'f Budget,
+}
+
 /// The lists of the system of a file, or of the one of several that has a name or number, and what has to be said of that.
 pub(super) fn chosen(
-    words: &[Token],
-    lists: &[Equations],
+    file: &File<'_>,
     declared: &Declared,
     which: Option<&str>,
-    budget: &Budget,
 ) -> Result<(BTreeSet<usize>, Option<String>), Problem> {
+    let File { words, lists, .. } = *file;
     let mut systems: Vec<Made> = Vec::new();
     for (at, word) in words.iter().enumerate() {
         let is_one = CONSTRUCTORS.iter().any(|name| word.is_word(name))
             && words.get(at + 1).is_some_and(|next| next.is("(") && !next.spaced);
-        if is_one && let Some(made) = made_of(words, at, lists, budget)? {
+        if is_one && let Some(made) = file.made_of(at)? {
             systems.push(made);
         }
     }
+    file.look_at_reassigned(systems.is_empty())?;
     let line = |made: &Made| {
         let name = made.name.as_deref().map_or(String::new(), |name| format!(" '{name}'"));
         format!("{name} of {}", named(lists, &made.lists))
@@ -237,68 +247,139 @@ fn named(lists: &[Equations], which: &BTreeSet<usize>) -> String {
     which.iter().map(name).collect::<Vec<_>>().join(", ")
 }
 
-/// What a constructor makes a system of; none where its first argument names no list.
-fn made_of(
-    words: &[Token],
-    at: usize,
-    lists: &[Equations],
-    budget: &Budget,
-) -> Result<Option<Made>, Problem> {
-    let pay = |steps: usize| budget.steps(steps).map_err(|spent| crate::too_much(&words[at].span, spent));
-    let name = at
-        .checked_sub(2)
-        .filter(|_| words[at - 1].is("="))
-        .map(|at| words[at].text.clone())
-        .filter(|name| !name.is_empty());
-    let mut found = BTreeSet::new();
-    let mut looked = BTreeSet::new();
-    // the tokens of the first argument
-    let (mut end, mut depth) = (at + 2, 0_usize);
-    while end < words.len() {
-        match words[end].kind {
-            TokenKind::Sign("(" | "[" | "{") => depth += 1,
-            TokenKind::Sign(")" | "]" | "}") if depth == 0 => break,
-            TokenKind::Sign(")" | "]" | "}") => depth -= 1,
-            TokenKind::Sign("," | ";") if depth == 0 => break,
-            _ => {}
-        }
-        end += 1;
+/// Functions of lists of equations that leave them as they are.
+const JOINING: [&str; 5] = ["vcat", "collect", "copy", "deepcopy", "scalarize"];
+
+impl File<'_> {
+    /// What a constructor makes a system of; none where it has no first argument.
+    fn made_of(&self, at: usize) -> Result<Option<Made>, Problem> {
+        let words = self.words;
+        let name = at
+            .checked_sub(2)
+            .filter(|_| words[at - 1].is("="))
+            .map(|at| words[at].text.clone())
+            .filter(|name| !name.is_empty());
+        let end = closing(words, at + 1).unwrap_or(words.len() - 1);
+        let first = self.divided(at + 2..end).into_iter().next().filter(|_| !words[at + 2].is(";"));
+        let Some(first) = first.filter(|first| !self.has_equals(first)) else { return Ok(None) };
+        let lists = self.lists_of(first, at)?;
+        Ok((!lists.is_empty()).then_some(Made { name, at, lists }))
     }
-    let mut open: Vec<(usize, usize)> = vec![(at + 2, end)];
-    while let Some((begin, end)) = open.pop() {
-        pay(lists.len())?;
-        found.extend((0..lists.len()).filter(|own| (begin..end).contains(&lists[*own].at)));
-        for word in words[begin..end].iter().filter(|word| word.kind == TokenKind::Name) {
-            pay(lists.len())?;
-            let mut own =
-                (0..lists.len()).filter(|at| lists[*at].name.as_ref() == Some(&word.text)).peekable();
-            if own.peek().is_some() {
+
+    /// Whether a piece of code is `name = value`.
+    fn has_equals(&self, range: &Range<usize>) -> bool {
+        range.len() > 1 && self.words[range.start + 1].is("=")
+    }
+
+    /// The parts of a piece of code that commas, semicolons and ends of lines divide, outside of inner brackets.
+    fn divided(&self, range: Range<usize>) -> Vec<Range<usize>> {
+        let (mut parts, mut begin, mut depth) = (Vec::new(), range.start, 0_usize);
+        for at in range.clone() {
+            let word = &self.words[at];
+            if depth == 0 && word.newline && at > begin {
+                parts.push(begin..at);
+                begin = at;
+            }
+            match word.kind {
+                TokenKind::Sign("(" | "[" | "{") => depth += 1,
+                TokenKind::Sign(")" | "]" | "}") => depth = depth.saturating_sub(1),
+                TokenKind::Sign("," | ";") if depth == 0 => {
+                    parts.push(begin..at);
+                    begin = at + 1;
+                }
+                _ => {}
+            }
+        }
+        parts.push(begin..range.end);
+        parts.retain(|part| !part.is_empty());
+        parts
+    }
+
+    /// The lists that a piece of code puts together: a list, the name of one, `vcat(a, b)`, `[a; b]`. A name is what was assigned to it last before
+    /// `before`.
+    ///
+    /// # Errors
+    /// Code that makes other equations of a list: nothing of it is run.
+    fn lists_of(&self, range: Range<usize>, before: usize) -> Result<BTreeSet<usize>, Problem> {
+        let words = self.words;
+        let pay = |steps: usize| {
+            self.budget.steps(steps).map_err(|spent| crate::too_much(&words[range.start].span, spent))
+        };
+        let mut found = BTreeSet::new();
+        let mut open = vec![(range.clone(), before)];
+        while let Some((part, before)) = open.pop() {
+            pay(self.lists.len() + self.assigned.len() + part.len())?;
+            let refused = |part: &Range<usize>| {
+                let place = words[part.start].span.start..words[part.end - 1].span.end;
+                let message =
+                    "these equations are no list, and no lists put together: what changes them is not read";
+                Problem::new(Code::Foreign, &place, message, "this").help(
+                    "write them as one list, eqs = [D(x) ~ ..., ...], with everything put in; lists are joined by vcat(a, b) or [a; b]",
+                )
+            };
+            let part = match words[part.clone()].last() {
+                Some(last) if last.is("...") && part.len() > 1 => part.start..part.end - 1,
+                Some(_) => part,
+                None => continue,
+            };
+            let (first, ends) =
+                (&words[part.start], |begin: usize| closing(words, begin) == Some(part.end - 1));
+            if part.len() == 1 && first.kind == TokenKind::Name {
+                let of_name = |one: &&Assignment| one.name < before && words[one.name].text == first.text;
+                if let Some(one) = self.assigned.iter().rev().find(of_name) {
+                    if one.right.is_empty() || !words[one.right.start - 1].is("=") {
+                        return Err(refused(&(one.name..one.right.start.max(one.name + 1))));
+                    }
+                    open.push((one.right.clone(), one.name));
+                    continue;
+                }
+                let own = (0..self.lists.len())
+                    .filter(|at| self.lists[*at].name.as_deref() == Some(first.text.as_str()));
+                let own: Vec<usize> = own.collect();
+                if own.is_empty() {
+                    return Err(refused(&part));
+                }
                 found.extend(own);
                 continue;
             }
-            if !looked.insert(word.text.clone()) {
+            // Equation[...]
+            let bracket = part.start + usize::from(first.is_word("Equation"));
+            if words[bracket].is("[") && ends(bracket) {
+                match (0..self.lists.len()).find(|at| self.lists[*at].at == bracket) {
+                    Some(own) => drop(found.insert(own)),
+                    None => open
+                        .extend(self.divided(bracket + 1..part.end - 1).into_iter().map(|one| (one, before))),
+                }
                 continue;
             }
-            pay(words.len())?;
-            // eqs = [eqs1; eqs2], eqs = vcat(eqs1, eqs2)
-            for place in (0..words.len().saturating_sub(2)).filter(|place| {
-                words[*place].is_word(&word.text) && words[place + 1].is("=") && words[*place].newline
-            }) {
-                let (mut to, mut depth) = (place + 2, 0_usize);
-                while to < words.len()
-                    && (depth > 0 || !words[to].newline)
-                    && words[to].kind != TokenKind::End
-                {
-                    match words[to].kind {
-                        TokenKind::Sign("(" | "[" | "{") => depth += 1,
-                        TokenKind::Sign(")" | "]" | "}") => depth = depth.saturating_sub(1),
-                        _ => {}
-                    }
-                    to += 1;
-                }
-                open.push((place + 2, to));
+            if first.is("(") && ends(part.start) {
+                open.push((part.start + 1..part.end - 1, before));
+                continue;
+            }
+            // Symbolics.scalarize(...)
+            let behind = part.start + if words[(part.start + 1).min(part.end - 1)].is(".") { 2 } else { 0 };
+            let is_joined = behind + 1 < part.end
+                && JOINING.iter().any(|name| words[behind].is_word(name))
+                && words[behind + 1].is("(")
+                && ends(behind + 1);
+            if !is_joined {
+                return Err(refused(&part));
+            }
+            open.extend(self.divided(behind + 2..part.end - 1).into_iter().map(|one| (one, before)));
+        }
+        Ok(found)
+    }
+
+    /// Looks at what is assigned to names of lists, where no constructor says which of them counts, and at all that is measured.
+    fn look_at_reassigned(&self, all: bool) -> Result<(), Problem> {
+        let counts = |list: &&Equations| all || list.is_measured();
+        let named: BTreeSet<&str> =
+            self.lists.iter().filter(counts).filter_map(|list| list.name.as_deref()).collect();
+        for one in self.assigned.iter().filter(|one| named.contains(self.words[one.name].text.as_str())) {
+            if !one.right.is_empty() {
+                self.lists_of(one.right.clone(), one.name)?;
             }
         }
+        Ok(())
     }
-    Ok((!found.is_empty()).then_some(Made { name, at, lists: found }))
 }

@@ -6,7 +6,9 @@ mod tables;
 
 pub use page::joint_page;
 pub(crate) use page::joint_section;
-use palmistry_fit::{EstimatedParameter, ParameterProfile, ParameterScale, SimulatedExperiments, StartEnd};
+use palmistry_fit::{
+    EstimatedParameter, JointFit, ParameterProfile, ParameterScale, SimulatedExperiments, StartEnd,
+};
 use palmistry_scenes::joint::{JointAnswer, JointExperiments};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -39,11 +41,16 @@ const HALF: f64 = 1.959_964;
 /// A parameter is poorly determined where half of its interval of 95 % is more than this part of a decade, or of its value on a linear scale.
 const POOR: f64 = 0.5;
 
+/// With fewer measurements than this beyond one for each parameter, intervals of 95 % hold the truth noticeably less often.
+const FEW: f64 = 10.0;
+
 /// What is known of a parameter, by its profile where that came to its ends, else by the information at the best parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Standing {
     Determined,
     Poorly,
+    /// Other values explain the measurements as well, and lie apart.
+    Several,
     /// The interval of 95 % goes beyond the bounds, or no measurement determines it.
     Undetermined,
     AtBound,
@@ -56,6 +63,7 @@ impl Standing {
         match self {
             Standing::Determined => "determined",
             Standing::Poorly => "poorly determined",
+            Standing::Several => "several values",
             Standing::Undetermined => "not determined",
             Standing::AtBound => "at a bound",
             Standing::NotEnded => "search not ended",
@@ -66,11 +74,14 @@ impl Standing {
         parameter: &EstimatedParameter,
         scaled: f64,
         deviation: Option<f64>,
+        interval: Option<[f64; 2]>,
         is_at_bound: bool,
     ) -> Standing {
         let Some(deviation) = deviation.filter(|_| !is_at_bound) else { return Standing::AtBound };
         let [low, high] = parameter.scaled_bounds();
-        let half = HALF * deviation;
+        // the wider of the two is believed
+        let by_profile = interval.map_or(0.0, |[from, to]| (scaled - from).max(to - scaled));
+        let half = (HALF * deviation).max(by_profile);
         let wide = match parameter.scale {
             ParameterScale::Linear => POOR * scaled.abs(),
             ParameterScale::Log => POOR * std::f64::consts::LN_10,
@@ -78,7 +89,7 @@ impl Standing {
         };
         match half {
             _ if half <= wide => Standing::Determined,
-            _ if low <= scaled - half && scaled + half <= high => Standing::Poorly,
+            _ if interval.is_some() || low <= scaled - half && scaled + half <= high => Standing::Poorly,
             _ => Standing::Undetermined,
         }
     }
@@ -92,6 +103,8 @@ struct Entry<'a> {
     deviation: Option<f64>,
     standing: Standing,
     profile: Option<&'a ParameterProfile>,
+    /// Its values at other ends that explain the measurements as well.
+    others: Vec<f64>,
 }
 
 impl Entry<'_> {
@@ -127,12 +140,18 @@ fn entries<'a>(observed: &JointObserved<'a>) -> Vec<Entry<'a>> {
         let profile = observed.answer.profiles.iter().find(|own| own.parameter == place);
         let is_open =
             profile.is_some_and(|own| (0..2).any(|side| own.interval[side].is_none() && !own.cut_off[side]));
+        let interval = profile.and_then(|own| Some([own.interval[0]?, own.interval[1]?]));
+        let others = observed.answer.information.as_ref().map_or(Vec::new(), |information| {
+            let scaled = fit.other_values(information, &observed.answer.apart, place);
+            scaled.into_iter().map(|value| parameter.scale.value(value)).collect()
+        });
         let standing = match has_ended {
             false => Standing::NotEnded,
             true if is_open && !is_at_bound => Standing::Undetermined,
-            true => Standing::of(parameter, scaled, deviation, is_at_bound),
+            true if !others.is_empty() => Standing::Several,
+            true => Standing::of(parameter, scaled, deviation, interval, is_at_bound),
         };
-        Entry { parameter, scaled, deviation: deviation.filter(|_| has_ended), standing, profile }
+        Entry { parameter, scaled, deviation: deviation.filter(|_| has_ended), standing, profile, others }
     };
     observed.experiments.problem().parameters.iter().enumerate().map(entry).collect()
 }
@@ -234,7 +253,7 @@ fn ending(observed: &JointObserved<'_>) -> Vec<String> {
         None => {}
         Some(Err(why)) => lines.push(format!("nothing was found: {why}")),
         Some(Ok(fit)) => {
-            let [random, near] = fit.arrived();
+            let [random, near] = fit.arrived(&observed.answer.apart);
             let others = fit.searches.len() - fit.random;
             lines.push(format!(
                 "best: log-likelihood {:.4}, chi-square {}",
@@ -249,13 +268,34 @@ fn ending(observed: &JointObserved<'_>) -> Vec<String> {
                 "{random} of {} searches from random starts come to it (within 0.1){beside}",
                 fit.random
             ));
+            if !observed.answer.apart.is_empty() {
+                lines.push(format!(
+                    "searches that ended elsewhere, where the measurements are explained as well: {} (log-likelihood lower by less than 1.92); parameters with several values have those too",
+                    observed.answer.apart.len()
+                ));
+            }
+            if fit.best == fit.random && is_from_the_nominal_values(observed, fit) {
+                lines.push(
+                    "no search from a random start came as far as the one from the nominal values: ask for more starts under [search]"
+                        .to_owned(),
+                );
+            }
+            let free =
+                observed.experiments.problem().measurements.len() as f64 - fit.best().found.len() as f64;
+            if free < FEW {
+                lines.push(format!(
+                    "{} for {}: standard deviations and intervals are right for many measurements, and too narrow for so few",
+                    count(observed.experiments.problem().measurements.len(), "measurement"),
+                    count(fit.best().found.len(), "parameter")
+                ));
+            }
             if fit.best().end != StartEnd::Converged {
                 lines.push(format!(
                     "the best search did not converge ({}): ask for more steps under [search]",
                     end_word(&fit.best().end)
                 ));
             }
-            if random <= 1 && fit.random > 1 {
+            if random <= 1 && fit.random > 1 && observed.answer.apart.is_empty() && !observed.interrupted {
                 lines.push(
                     "few searches came there: ask for more starts under [search] to be sure of it".to_owned(),
                 );
@@ -283,6 +323,11 @@ fn ending(observed: &JointObserved<'_>) -> Vec<String> {
     lines
 }
 
+/// Whether the search that came farthest began at the nominal values.
+fn is_from_the_nominal_values(observed: &JointObserved<'_>, fit: &JointFit) -> bool {
+    observed.answer.nominal.as_ref().is_some_and(|nominal| nominal.place == fit.best().start)
+}
+
 /// The answer as text.
 pub fn joint_text(observed: &JointObserved<'_>) -> String {
     let mut out = String::new();
@@ -304,6 +349,10 @@ pub fn joint_text(observed: &JointObserved<'_>) -> String {
                 with_deviation(entry),
                 entry.standing.word()
             );
+            if !entry.others.is_empty() {
+                let others: Vec<String> = entry.others.iter().take(4).map(|value| short(*value)).collect();
+                let _ = write!(out, "; also {}", others.join(", "));
+            }
             if let Some([low, high]) = entry.interval_words() {
                 let _ = write!(out, "; 95 %: {low} to {high}");
             }
@@ -374,6 +423,7 @@ pub fn joint_json(observed: &JointObserved<'_>) -> Value {
                 "scaled": entry.scaled,
                 "deviation": entry.deviation.map(finite),
                 "status": entry.standing.word(),
+                "other_values": entry.others,
                 "interval": entry.interval().map(|ends| ends.map(|end| end.map(finite))),
             })
         })
@@ -388,7 +438,7 @@ pub fn joint_json(observed: &JointObserved<'_>) -> Value {
         Some(Ok(fit)) => {
             let mut best = simulated_json(observed, &fit.simulated);
             let free = answer.at_bounds.iter().filter(|is_at| !**is_at).count();
-            let [random, near] = fit.arrived();
+            let [random, near] = fit.arrived(&answer.apart);
             best["arrived"] = json!({ "from_random_starts": random, "from_near_it": near });
             best["random_starts"] = json!(fit.random);
             best["aic"] = json!(2.0 * problem.parameters.len() as f64 - 2.0 * fit.simulated.log_likelihood);

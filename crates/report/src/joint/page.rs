@@ -25,7 +25,10 @@ fn parameters(observed: &JointObserved<'_>) -> Markup {
                     td { (entry.parameter.scale.word()) }
                     td.n { (short(entry.parameter.bounds[0])) " to " (short(entry.parameter.bounds[1])) }
                     td.n { (entry.parameter.nominal.map_or(String::new(), short)) }
-                    td { (entry.standing.word()) }
+                    td {
+                        (entry.standing.word())
+                        @if !entry.others.is_empty() { ": also " (entry.others.iter().take(4).map(|value| short(*value)).collect::<Vec<_>>().join(", ")) }
+                    }
                     @if has_profiles { td.n { @if let Some([low, high]) = entry.interval_words() { (low) " to " (high) } } }
                 } } }
             } }

@@ -153,10 +153,13 @@ pub(super) fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
             "fits": fit.fits,
             "chi_square": finite(fit.chi_square),
             "degrees_of_freedom": fit.degrees,
-            "probability": fit.probability,
+            "probability": fit.is_tested().then_some(fit.probability),
             "noise": finite(fit.sigma),
             "noise_from": noise_from(fit.from),
         });
+        if !fit.is_tested() {
+            found["fit"]["tested"] = json!(false);
+        }
         if let (Some(drift), Some(output)) = (fit.drift, &update.drifting) {
             found["fit"]["drift"] = json!({ "output": output, "probability": drift.probability });
         }

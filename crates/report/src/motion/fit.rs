@@ -12,7 +12,7 @@ pub(super) fn finite(value: f64) -> Value {
 pub(super) fn noise_from(from: NoiseFrom) -> &'static str {
     match from {
         NoiseFrom::Stated => "stated",
-        NoiseFrom::Residual => "residual",
+        NoiseFrom::Residual | NoiseFrom::Untested => "residual",
         NoiseFrom::Computation => "computation",
     }
 }
@@ -45,6 +45,9 @@ fn explained(fit: &Fit) -> String {
     match fit.from {
         NoiseFrom::Stated => format!("passes the chi-square test ({})", p_in_words(fit.probability)),
         NoiseFrom::Residual => format!("residuals are white noise of {:.1e}", fit.sigma),
+        NoiseFrom::Untested => {
+            format!("too few measurements to test the residuals; their size is {:.1e}", fit.sigma)
+        }
         NoiseFrom::Computation => "residuals are rounding errors".to_owned(),
     }
 }
@@ -146,11 +149,33 @@ pub(super) fn suspect_json(names: &[&str], suspect: &Suspect) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use super::p_in_words;
+    use super::{explained, p_in_words};
+    use palmistry_observe::{Fit, NoiseFrom};
 
     #[test]
     fn a_probability_has_its_digits() {
         let words = [0.43, 0.0021, 2.1e-7, 0.0].map(p_in_words);
         assert_eq!(words, ["p = 0.43", "p = 0.0021", "p = 2.1e-7", "p below 1e-300"]);
+    }
+
+    /// What was not tested is not called noise.
+    #[test]
+    fn residuals_that_were_not_tested_are_called_so() {
+        let fit = Fit {
+            chi_square: 5.0,
+            degrees: 5,
+            probability: 1.0,
+            outliers: 0,
+            measurements: 7,
+            squares: None,
+            neighbours: None,
+            drift: None,
+            sigma: 0.5,
+            from: NoiseFrom::Untested,
+            fits: true,
+        };
+        assert_eq!(explained(&fit), "too few measurements to test the residuals; their size is 5.0e-1");
+        let noise = Fit { from: NoiseFrom::Residual, ..fit };
+        assert_eq!(explained(&noise), "residuals are white noise of 5.0e-1");
     }
 }

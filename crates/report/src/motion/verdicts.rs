@@ -1,7 +1,7 @@
 //! Whether all windows together are explained, and the innovations of a filter, as text and as JSON.
 
 use super::fit::{finite, p_in_words};
-use palmistry_observe::{Innovations, Together, Track};
+use palmistry_observe::{Innovations, Together, Track, Update};
 use serde_json::{Value, json};
 
 /// What is to be said of a track as a whole, a line each: of several windows whether they are explained together and where they meet, of a filter whether its
@@ -9,7 +9,15 @@ use serde_json::{Value, json};
 pub(super) fn verdict_lines(track: &Track) -> Vec<String> {
     let together = track.together().map(|all| together_in_words(&all));
     let innovations = track.innovations.map(|own| innovations_in_words(&own));
-    together.into_iter().chain(innovations).collect()
+    together.into_iter().chain(untested_in_words(&track.updates)).chain(innovations).collect()
+}
+
+/// How many windows nothing was tested of, where there are several.
+fn untested_in_words(updates: &[Update]) -> Option<String> {
+    let untested = updates.iter().filter(|update| update.is_untested()).count();
+    (untested > 0 && updates.len() > 1).then(|| {
+        format!("of {untested} of {} windows too little was measured to test the residuals", updates.len())
+    })
 }
 
 pub(super) fn together_in_words(all: &Together) -> String {

@@ -145,5 +145,7 @@ fn sampled_text(branch: &AccessibilityBranch, report: &SweepReport, out: &mut St
     if report.interrupted {
         let _ = writeln!(out, "  interrupted: these are the states done until then");
     }
-    let _ = writeln!(out, "  {:.2} s", report.seconds);
+    if report.seconds.is_finite() {
+        let _ = writeln!(out, "  {:.2} s", report.seconds);
+    }
 }

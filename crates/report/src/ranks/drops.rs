@@ -176,11 +176,15 @@ pub fn drops_text(answer: &DropAnswer) -> String {
         let _ = writeln!(out, "minor {}: of {}", place(&minor.equations, &[]), minor.rows.join(", "));
         let _ = writeln!(out, "  {product}");
     }
-    // cut off before its first case it has none to count
+    // cut off before its first case it has none to count, and no time where none is to be told
     let counted = match answer.cases {
-        (0, _) => String::new(),
-        (cases, empty) => format!("{cases} cases, {empty} of them empty, "),
+        (0, _) => None,
+        (cases, empty) => Some(format!("{cases} cases, {empty} of them empty")),
     };
-    let _ = writeln!(out, "{counted}{:.1} s", answer.seconds);
+    let time = answer.seconds.is_finite().then(|| format!("{:.1} s", answer.seconds));
+    let last: Vec<String> = counted.into_iter().chain(time).collect();
+    if !last.is_empty() {
+        let _ = writeln!(out, "{}", last.join(", "));
+    }
     out
 }

@@ -231,12 +231,13 @@ pub fn global_text(answer: &GlobalAnswer) -> String {
     }
     if found.rounds > 0 {
         let orders: Vec<String> = found.orders.iter().map(ToString::to_string).collect();
+        let is_timed = answer.seconds.is_finite();
+        let time = if is_timed { format!(", {:.1} s", answer.seconds) } else { String::new() };
         let _ = writeln!(
             out,
-            "computed at {} random points modulo random primes of 62 bits, from derivatives of the outputs up to {}, {:.1} s",
+            "computed at {} random points modulo random primes of 62 bits, from derivatives of the outputs up to {}{time}",
             found.rounds,
             orders.join(", "),
-            answer.seconds
         );
     }
     out

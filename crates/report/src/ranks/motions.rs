@@ -63,9 +63,11 @@ fn certainty(log2_error: f64) -> String {
 /// Identifiable combinations and unobservable directions as text, before what was found at sampled states or alone.
 pub(super) fn motions_text(found: &UnobservableDirections, sampled: bool, out: &mut String) {
     let scope = if found.for_all_parameters { ", for all parameter values" } else { "" };
+    // a field stays one at any values; at special ones there may be more of them, and fewer functions
+    let generic_scope = if found.for_all_parameters { ", for almost all parameter values" } else { "" };
     let degree = if found.cut_off { "; higher degrees have too many coefficients to be tried" } else { "" };
     if !found.functions.is_empty() || found.functions_missing > 0 {
-        let _ = writeln!(out, "identifiable functions of the unobservable unknowns{scope}:");
+        let _ = writeln!(out, "identifiable functions of the unobservable unknowns{generic_scope}:");
     }
     for function in &found.functions {
         // a formula is on one line, however long: it is to be copied

@@ -57,6 +57,9 @@ pub struct JointAnswer {
     pub at_bounds: Vec<bool>,
     /// The information of the measurements about the parameters.
     pub information: Option<Information>,
+    /// The searches that ended elsewhere and as likely, by their places: where there are some, parameters have several values that explain the
+    /// measurements.
+    pub apart: Vec<usize>,
     /// The test of fit; none where the size of the errors is estimated, or errors are not normal.
     pub goodness: Option<GoodnessOfFit>,
     /// Profile likelihoods, where they were asked for.
@@ -137,6 +140,7 @@ impl JointExperiments {
             fit: None,
             at_bounds: Vec::new(),
             information: None,
+            apart: Vec::new(),
             goodness: None,
             profiles: Vec::new(),
         };
@@ -153,6 +157,9 @@ impl JointExperiments {
             if best.end == StartEnd::Converged {
                 let told = information.directions.iter().filter(|one| one.deviation.is_finite()).count();
                 answer.goodness = self.goodness(&found.simulated, told);
+            }
+            if best.end == StartEnd::Converged {
+                answer.apart = found.apart(&information);
             }
             if self.scene.profiles {
                 let one = |place: usize| {

@@ -71,6 +71,17 @@ impl Checks<'_> {
         Err(self.wrong(place, format!("'{}' must not be negative, and is {value}", last(place)), help))
     }
 
+    /// The standard deviation of an error, or a resolution: zero where none is stated. Measurements are weighted by its square; where that is
+    /// no number any more, an error that is stated would be taken for one that is not.
+    fn deviation(&self, place: &str, value: f64, unit: &str) -> Result<(), Problem> {
+        self.not_negative(place, value, unit)?;
+        if is_deviation(value) {
+            return Ok(());
+        }
+        let message = format!("'{}' is {value:e}, whose square is beyond any number", last(place));
+        Err(self.wrong(place, message, format!("{DEVIATIONS}{}", spaced(unit))))
+    }
+
     fn count(&self, place: &str, value: usize, range: RangeInclusive<usize>) -> Result<(), Problem> {
         if range.contains(&value) {
             return Ok(());
@@ -99,6 +110,14 @@ impl Checks<'_> {
         Ok(())
     }
 }
+
+/// Whether errors of this size can be weighted, or are none.
+pub(crate) fn is_deviation(value: f64) -> bool {
+    value == 0.0 || value > 0.0 && (value * value).is_normal()
+}
+
+/// What to do about one that is none.
+pub(crate) const DEVIATIONS: &str = "give zero where none is stated, or a number from 1e-150 to 1e150";
 
 /// A key without the tables that it stands in and its index.
 fn last(place: &str) -> &str {

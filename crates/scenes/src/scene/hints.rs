@@ -3,6 +3,7 @@
 
 use palmistry_io::foreign::shown_path;
 use palmistry_lang::{nearest, nearest_file};
+use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::Path;
 
@@ -158,15 +159,37 @@ pub(crate) fn refused_file(file: &Path, what: &str) -> Option<(String, String)> 
     if palmistry_io::file::is_folder(file) {
         return Some((format!("{} is a folder", shown_path(file)), format!("name {what} in it")));
     }
+    let shown = shown_path(file);
+    match std::fs::metadata(file) {
+        // a device never ends, and a pipe is read once, while a scene may be read again
+        Ok(_) => {
+            let help = match what == RECORDING {
+                true => {
+                    "name a file; what another program writes is read by 'palmistry observe SCENE --data -'"
+                        .to_owned()
+                }
+                false => format!("name {what} on the disk"),
+            };
+            return Some((format!("{shown} is no regular file, but a device, a pipe or a socket"), help));
+        }
+        Err(why) if !matches!(why.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            let help = "let it be read, or name another file";
+            return Some((format!("cannot read {shown}: {why}"), help.to_owned()));
+        }
+        Err(_) => {}
+    }
     let help = match nearest_file(file) {
         Some(near) => format!("perhaps you meant '{near}'"),
         None => "a file is looked for from the folder in which the scene lies".to_owned(),
     };
-    Some((format!("there is no file {}", shown_path(file)), help))
+    Some((format!("there is no file {shown}"), help))
 }
 
 /// What 'model' names.
 pub(crate) const PROOF_FILE: &str = "a proof file";
+
+/// What 'record' names.
+pub(crate) const RECORDING: &str = "a recording";
 
 /// The line in which something stands, its key and its value.
 struct Line<'t> {

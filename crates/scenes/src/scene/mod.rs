@@ -3,7 +3,7 @@
 //! [`keys`] is the file as it is written, [`check`] checks every value, [`place`] knows where in the
 //! text each stands. Nothing here simulates or estimates.
 
-mod check;
+pub(crate) mod check;
 mod columns;
 pub(crate) mod hints;
 mod keys;
@@ -25,7 +25,7 @@ pub use simulated::{Body, LibraryBody, Palms, SceneOutline, Simulated, Simulated
 use palmistry_bodies::mechanics::Palm;
 use palmistry_io::foreign::name_of;
 use palmistry_lang::{Code, Problem, System, load};
-use palmistry_observe::{ColumnNames, FaultRules};
+use palmistry_observe::{ColumnNames, FaultRules, Loss};
 use place::Places;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -83,7 +83,7 @@ impl Scene {
         let named = [("model", Some(&scene.model)), ("data.record", scene.data.record.as_ref())];
         for (place, file) in named.into_iter().filter_map(|(place, file)| Some((place, file?))) {
             let is_stream = place == "data.record" && file == Path::new(check::STREAM_NAME);
-            let what = if place == "model" { hints::PROOF_FILE } else { "a recording" };
+            let what = if place == "model" { hints::PROOF_FILE } else { hints::RECORDING };
             if let Some((message, help)) = hints::refused_file(file, what).filter(|_| !is_stream) {
                 return Err(scene.error_at(place, message, "named here", help));
             }
@@ -132,6 +132,26 @@ impl Scene {
     pub fn old_keys(&self) -> Vec<(&'static str, &'static str)> {
         let Ok(places) = Places::of(&self.text) else { return Vec::new() };
         OLD_KEYS.into_iter().filter(|(old, _)| places.has("observer", old)).collect()
+    }
+
+    /// Keys of `[observer]` that this scene gives and no method of it heeds, each with the methods that would.
+    pub fn unheeded_keys(&self) -> Vec<(&'static str, &'static str)> {
+        let Ok(places) = Places::of(&self.text) else { return Vec::new() };
+        let has = |wanted: &[Method]| self.observer.methods.iter().any(|method| wanted.contains(method));
+        let by_windows = self.observer.methods.iter().any(|method| method.is_by_windows());
+        let windows = "newton, trust-region and multiple-shooting";
+        [
+            ("loss", windows, by_windows || self.observer.loss == Loss::default()),
+            ("whole", windows, by_windows || !self.observer.whole),
+            ("shooting", "multiple-shooting", has(&[Method::MultipleShooting])),
+            ("kalman", "kalman and smoother", has(&[Method::Kalman, Method::Smoother])),
+            ("unscented", "unscented", has(&[Method::Unscented])),
+            ("high_gain", "high-gain", has(&[Method::HighGain])),
+        ]
+        .into_iter()
+        .filter(|(key, _, is_heeded)| !is_heeded && places.has("observer", key))
+        .map(|(key, methods, _)| (key, methods))
+        .collect()
     }
 
     /// The text of the scene.

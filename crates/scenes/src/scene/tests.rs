@@ -279,6 +279,23 @@ fn mistakes_are_shown_at_their_place() {
     }
 }
 
+/// What no method of a scene heeds is named, and nothing else is.
+#[test]
+fn keys_that_change_nothing_are_named() {
+    let own =
+        "loss = \"huber\"\nwhole = true\n[observer.shooting]\nstarts = 3\n[observer.kalman]\nprior = 0.2\n";
+    let text = SHORT.replace("[observer]", "[sensor]\nnoise = 1e-3\n[observer]") + own;
+    let unheeded = |methods: &str| -> Vec<&str> {
+        let scene = parse(&text.replace("[\"newton\"]", methods));
+        scene.unheeded_keys().into_iter().map(|(key, _)| key).collect()
+    };
+    assert_eq!(unheeded("[\"kalman\"]"), ["loss", "whole", "shooting"]);
+    assert_eq!(unheeded("[\"kalman\", \"newton\"]"), ["shooting"]);
+    assert_eq!(unheeded("[\"smoother\", \"multiple-shooting\"]"), [""; 0]);
+    assert_eq!(unheeded("[\"integration\"]"), ["loss", "whole", "shooting", "kalman"]);
+    assert!(parse(SHORT).unheeded_keys().is_empty());
+}
+
 #[test]
 fn files_that_a_scene_names_are_looked_for() {
     let folder = tempfile::tempdir().unwrap();

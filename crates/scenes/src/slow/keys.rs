@@ -1,5 +1,6 @@
 //! Scenes of slow motion as they are written: their keys, and whether the values can be used.
 
+use super::super::scene::check::{DEVIATIONS, is_deviation};
 use super::super::scene::place::Places;
 use super::super::scene::{Body, sample_times};
 use super::families::Family;
@@ -177,8 +178,14 @@ fn checked(keys: Keys, places: &Places, name: &str, text: &str) -> Result<SlowSc
             ));
         }
     }
+    for (place, value) in [("sensor.noise", sensor.noise), ("sensor.resolution", sensor.resolution)] {
+        if !is_deviation(value) {
+            return Err(wrong(place, format!("{value:e} has a square beyond any number"), DEVIATIONS));
+        }
+    }
     let folder = Path::new(name).parent().unwrap_or(Path::new(""));
-    let mut faults = FaultRules::default();
+    // steps that vary so much are no gaps of a recording, as in every other scene
+    let mut faults = FaultRules { jitter: sensor.jitter, ..FaultRules::default() };
     let (record, columns) = match keys.data {
         Some(data) => {
             (faults.on_fault, faults.spike) = (data.on_fault, data.spike);
@@ -304,10 +311,10 @@ fn checked_study(
     if study.samples.iter().any(|samples| !(24..=MOST_SAMPLES).contains(samples)) {
         return Err(wrong("study.samples", "too few or too many samples".into(), "give 24 to 20000"));
     }
-    if study.resolutions.iter().any(|resolution| !(*resolution >= 0.0 && resolution.is_finite())) {
+    if !study.resolutions.iter().all(|resolution| is_deviation(*resolution)) {
         return Err(wrong(
             "study.resolutions",
-            "a resolution is negative or none".into(),
+            "a resolution is negative or none, or its square is beyond any number".into(),
             "give zero or more, in m",
         ));
     }
@@ -335,4 +342,32 @@ fn checked_study(
     }
     let StudyKeys { bodies, families, samples, resolutions, size, margin, rounds, orders, jumps } = study;
     Ok(SlowStudy { bodies, families, samples, resolutions, size, margin, rounds, orders, jumps })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SlowScene;
+
+    fn scene(sensor: &str) -> Result<SlowScene, String> {
+        let text = format!(
+            "title = \"a\"\nmotion = \"quasistatic\"\n[sensor]\n{sensor}\n[data]\nrecord = \"run.csv\"\n"
+        );
+        SlowScene::parse("a.toml", &text).map_err(|error| error.message.clone())
+    }
+
+    /// A jitter that is stated is heeded of a recording, too.
+    #[test]
+    fn the_jitter_of_a_recording_arrives_at_its_rules() {
+        assert_eq!(scene("jitter = 0.1").unwrap().faults.jitter, 0.1);
+        assert_eq!(scene("").unwrap().faults.jitter, 0.0);
+    }
+
+    /// Errors whose squares are no numbers would count as none.
+    #[test]
+    fn errors_that_vanish_are_refused() {
+        for sensor in ["noise = 1e-320", "resolution = 1e-200", "noise = 1e200"] {
+            assert!(scene(sensor).unwrap_err().contains("beyond any number"), "{sensor}");
+        }
+        assert!(scene("noise = 0").is_ok() && scene("noise = 1e-9").is_ok());
+    }
 }

@@ -1,5 +1,6 @@
 //! Scenes in space as they are written: their keys, and whether the values can be used.
 
+use super::super::scene::check::{DEVIATIONS, is_deviation};
 use super::super::scene::place::Places;
 use super::super::scene::sample_times;
 use super::measurements::SpaceSensor;
@@ -173,6 +174,10 @@ fn checked(keys: Keys, places: &Places, name: &str, text: &str) -> Result<SpaceS
         if !(value >= 0.0 && value.is_finite()) {
             let message = format!("it must not be negative, and is {value}");
             return Err(wrong.at(&format!("sensor.{place}"), message, "give zero or a number above it"));
+        }
+        if !is_deviation(value) {
+            let message = format!("{value:e} has a square beyond any number");
+            return Err(wrong.at(&format!("sensor.{place}"), message, DEVIATIONS));
         }
     }
     for (i, value) in keys.gravity.iter().enumerate() {

@@ -210,7 +210,9 @@ fn of_numbers(line: &str, rest: &str) -> Option<String> {
     }
     let word = &rest[..rest.find(|c| !is_word(c)).unwrap_or(rest.len())];
     let help = match word.chars().next() {
-        Some('_' | 'x' | 'X') => "a number is written in decimal digits without separators, as in 1000",
+        Some('_' | 'x' | 'X') if is_of_digits(line, word) => {
+            "a number is written in decimal digits without separators, as in 1000"
+        }
         Some('d' | 'D')
             if word.len() == 1 && rest[1..].starts_with(['+', '-']) || word[1..].starts_with(digit) =>
         {
@@ -226,6 +228,20 @@ fn of_numbers(line: &str, rest: &str) -> Option<String> {
         _ => return None,
     };
     Some(help.to_owned())
+}
+
+/// Whether a number goes on in another writing of numbers, as in `1_000` and `0x1f`, and is no factor of a name, as in `2x`.
+fn is_of_digits(line: &str, word: &str) -> bool {
+    let rest = &word[1..];
+    match word.starts_with('_') {
+        true => rest.starts_with(|c: char| c.is_ascii_digit()),
+        false => {
+            let is_zero = line
+                .strip_suffix('0')
+                .is_some_and(|before| !before.ends_with(|c: char| is_word(c) || c == '.'));
+            is_zero && !rest.is_empty() && rest.chars().all(|c| c.is_ascii_hexdigit())
+        }
+    }
 }
 
 /// By the words of the line as far as the place.

@@ -454,6 +454,7 @@ pub fn moved(input: &mut Text<'_>) -> Read<(Target, bool)> {
         literal("+").void().parse_next(input)?;
         Ok(at)
     };
+    let before = input.checkpoint();
     if let Some(at) = opt(step).parse_next(input)? {
         if opt(peek(literal("="))).parse_next(input)?.is_some() {
             let what = "'+ =' with a blank between, or a rate";
@@ -468,7 +469,11 @@ pub fn moved(input: &mut Text<'_>) -> Read<(Target, bool)> {
             let help = format!("a rate stands alone on the left, as in {}{} = ...", found.name, found.suffix);
             return stop(at, "'=' and the rate of change", Some(help));
         }
-        return Ok((found, true));
+        if input.input.as_ref().starts_with('=') {
+            return Ok((found, true));
+        }
+        // the sum of `2x + y`, and no step
+        input.reset(&before);
     }
     let suffix = found.suffix.clone();
     let (primes, experiment) = suffix.split_at(suffix.find('@').unwrap_or(suffix.len()));

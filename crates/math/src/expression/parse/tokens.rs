@@ -268,8 +268,9 @@ pub fn list<'a, T>(
             if opt(literal(",")).parse_next(input)?.is_none() {
                 return Ok(found);
             }
-            let behind = input.input.as_ref().split(ends_a_line).next().unwrap_or_default().trim_start();
-            let ends_line = behind.is_empty() || behind.starts_with('#');
+            // no farther than the next sign: a list is as long as its line
+            let next = input.input.as_ref().chars().find(|c| ends_a_line(*c) || !c.is_whitespace());
+            let ends_line = next.is_none_or(|c| c == '#' || ends_a_line(c));
             blank(input)?;
             match one.parse_next(input) {
                 Ok(next) => found.push(next),

@@ -157,7 +157,7 @@ pub fn solutions_telling(
     known: &mut dyn FnMut(SolutionsAnswer),
 ) -> Result<SolutionsAnswer, CodistributionError> {
     let frame = Frame::new(system, &question.conditions)?;
-    let generic = frame.generic;
+    let generic = frame.generic.clone();
     let unknowns = system.unknowns();
     let mut found: Vec<SolutionsOf> = Vec::new();
     for symbol in &unknowns {
@@ -176,8 +176,10 @@ pub fn solutions_telling(
             at_least: None,
         });
     }
-    for (name, expression) in &question.expressions {
-        let (local, local_error) = local_of(system, &question.conditions, *expression, &generic)?;
+    // at the time at which they are asked for: an initial condition that is known is known then alone
+    let (of_functions, locals) = frame.functions(system, &question.conditions, &expressions(question));
+    for ((name, _), local) in question.expressions.iter().zip(locals) {
+        let local_error = sum_of_errors(generic.log2_error, of_functions.log2_error);
         let solutions = Solutions::Undecided(String::new());
         found.push(SolutionsOf {
             name: name.clone(),
@@ -243,26 +245,6 @@ fn conclude(answer: &mut SolutionsAnswer, counted: &Result<(), String>, generic:
             }
         }
     }
-}
-
-/// Whether an expression is locally observable: the rank stays what it is when it is an output.
-fn local_of(
-    system: &System,
-    conditions: &Assignment,
-    expression: NodeId,
-    generic: &GenericAnswer,
-) -> Result<(Observability, f64), CodistributionError> {
-    let mut with_it = system.clone();
-    with_it.outputs.push((String::new(), expression));
-    with_it.output_guards.push(Vec::new());
-    let all = Frame::new(&mut with_it, conditions)?.generic;
-    let log2_error = sum_of_errors(generic.log2_error, all.log2_error);
-    let seen = match (generic.rank(), all.rank()) {
-        (Some(rank), Some(with_it)) if rank == with_it => Observability::Yes,
-        (Some(_), Some(_)) => Observability::No,
-        _ => Observability::Undecided,
-    };
-    Ok((seen, log2_error))
 }
 
 fn expressions(question: &SolutionsQuestion) -> Vec<NodeId> {

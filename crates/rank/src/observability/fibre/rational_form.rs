@@ -156,7 +156,9 @@ impl RationalForm {
         expressions: &[NodeId],
     ) -> Result<RationalForm, Option<String>> {
         let has_zero_outputs = !system.zero_outputs().is_empty() || system.highest_lie_order().is_some();
-        if system.time == Time::Discrete || has_zero_outputs {
+        // what is known at the beginning alone cannot be measured from then on
+        let is_known_at_first = system.closed_coordinates().iter().any(|state| system.known.contains(state));
+        if system.time == Time::Discrete || has_zero_outputs || is_known_at_first {
             return Err(None);
         }
         let mut graph = system.graph.clone();

@@ -66,7 +66,8 @@ pub struct UnobservableDirections {
     pub functions_missing: usize,
     /// Whether polynomials of a low degree were left untried, because they have too many coefficients.
     pub cut_off: bool,
-    /// Whether all this holds for all values of the parameters that the file gives a value to; otherwise at these values.
+    /// Whether the fields are unobservable directions for all values of the parameters that the file gives a value to, and the functions observable for
+    /// almost all; otherwise at these values.
     pub for_all_parameters: bool,
     /// Whether the fields show that the rank is no greater, whatever further Lie derivatives are taken.
     pub settles_the_rank: bool,

@@ -282,7 +282,7 @@ impl Checks<'_> {
                 return Err(self.wrong("study.noise.levels", "there is no level of noise", help));
             }
             for (index, level) in noise.levels.iter().enumerate() {
-                self.not_negative(&format!("study.noise.levels[{index}]"), *level, "m")?;
+                self.deviation(&format!("study.noise.levels[{index}]"), *level, "m")?;
             }
             self.count("study.noise.seeds", noise.seeds, 1..=1_000_000)?;
         }
@@ -334,6 +334,7 @@ impl Checks<'_> {
             }
         }
         self.positive(&place("noise"), study.noise, "m")?;
+        self.deviation(&place("noise"), study.noise, "m")?;
         self.count(&place("points"), study.points, 2..=1001)?;
         let motions = study.orientations.len() * study.rates.len();
         if motions * study.points * study.points > MOST_BOUNDS {

@@ -14,8 +14,8 @@ pub(super) const MOST_DELAY: f64 = 4.0;
 
 impl Checks<'_> {
     pub(super) fn sensor(&self, sensor: &Sensor) -> Result<(), Problem> {
-        self.not_negative("sensor.noise", sensor.noise, "m")?;
-        self.not_negative("sensor.resolution", sensor.resolution, "m")?;
+        self.deviation("sensor.noise", sensor.noise, "m")?;
+        self.deviation("sensor.resolution", sensor.resolution, "m")?;
         self.not_negative("sensor.jitter", sensor.jitter, "s")
     }
 
@@ -26,12 +26,9 @@ impl Checks<'_> {
     ) -> Result<(), Problem> {
         for (name, channel) in channels {
             let place = |key: &str| format!("sensor.{name}.{key}");
-            self.not_negative(&place("noise"), channel.noise.unwrap_or(0.0), "the unit of the column")?;
-            self.not_negative(
-                &place("resolution"),
-                channel.resolution.unwrap_or(0.0),
-                "the unit of the column",
-            )?;
+            let unit = "the unit of the column";
+            self.deviation(&place("noise"), channel.noise.unwrap_or(0.0), unit)?;
+            self.deviation(&place("resolution"), channel.resolution.unwrap_or(0.0), unit)?;
             self.finite(&place("bias"), channel.bias)?;
             self.finite(&place("gain"), channel.gain)?;
             self.not_negative(&place("delay"), channel.delay, "s")?;

@@ -58,6 +58,13 @@ fn every_value_is_checked_and_its_place_marked() {
             "",
         ),
         ("noise = 1e-5", "noise = -1e-5", "'noise' must not be negative", "-1e-5", "in m"),
+        // errors whose squares are no numbers would count as none
+        ("noise = 1e-5", "noise = 1e-320", "square is beyond any number", "1e-320", "1e-150 to 1e150, in m"),
+        ("noise = 1e-5", "noise = 1e-200", "'noise' is 1e-200", "1e-200", "zero where none is stated"),
+        ("noise = 1e-5", "noise = 1e200", "'noise' is 1e200", "1e200", "1e-150 to 1e150"),
+        ("resolution = 1e-4", "resolution = 1e-320", "square is beyond any number", "1e-320", "in m"),
+        ("jitter = 0.001", "tau1 = { noise = 1e-320 }", "beyond any number", "1e-320", "unit of the column"),
+        ("levels = [1e-5, 1e-4]", "levels = [1e-5, 1e-320]", "beyond any number", "1e-320", "in m"),
         ("jitter = 0.001", "jitter = 0.01", "jitter of 0.01 s is too much", "0.01", "at most 0.8"),
         ("jitter = 0.001", "jiter = 0.001", "unknown key 'jiter'", "jiter", "perhaps you meant 'jitter'"),
         ("jitter = 0.001", "tau1 = \"loud\"", "unknown key 'tau1'", "tau1", "known here"),
