@@ -22,8 +22,8 @@ pub use information::{Information, WeakDirection};
 pub use laws::{ErrorLaw, ErrorScale, ParameterScale, Prior, PriorLaw};
 pub use likelihood::{Likelihood, SimulatedExperiments};
 pub use problem::{EstimatedParameter, JointExperiment, JointMeasurement, JointProblem, Phase};
-pub use profile::{ALLOWED, ParameterProfile, profile};
-pub use search::{JointFit, SearchEnd, StartEnd, fit};
+pub use profile::{ParameterProfile, profile};
+pub use search::{ALLOWED, JointFit, SearchEnd, StartEnd, fit};
 pub use simulate::{Exactness, NotFollowed};
 
 #[cfg(test)]

@@ -4,11 +4,8 @@
 //! profile likelihood, Bioinformatics 25, 2009.
 
 use super::likelihood::Likelihood;
-use super::search::{StartEnd, search};
+use super::search::{ALLOWED, StartEnd, search};
 use super::simulate::Exactness;
-
-/// By how much the logarithm of the likelihood may fall within an interval of 95 %: half of the quantile of chi-square with one degree of freedom.
-pub const ALLOWED: f64 = 3.841_458_820_694_124 / 2.0;
 
 /// A step along a profile is chosen to change the logarithm of the likelihood by about this.
 const WANTED: f64 = 0.3;

@@ -31,9 +31,8 @@ const LAST_STEPS: u64 = 50;
 /// Two ends are one optimum whose logarithms of the likelihood differ by less than this, unless they lie apart.
 const SAME: f64 = 0.1;
 
-/// An end is as likely as the best one where the logarithm of its likelihood is lower by no more than this: half of what a chi-square with one degree of
-/// freedom exceeds in 5 % of cases.
-const AS_LIKELY: f64 = 1.92;
+/// By how much the logarithm of the likelihood may fall within an interval of 95 %: half of the quantile of chi-square with one degree of freedom.
+pub const ALLOWED: f64 = 3.841_458_820_694_124 / 2.0;
 
 /// Ends that are as likely lie apart where a parameter differs by more than this many standard deviations: within its interval of 95 % it would by two.
 const APART: f64 = 5.0;
@@ -105,7 +104,7 @@ impl JointFit {
         let is_apart = |place: &usize| {
             let one = &self.searches[*place];
             let differs = (0..best.found.len()).any(|parameter| self.differs(information, one, parameter));
-            one.objective <= best.objective + AS_LIKELY && differs
+            one.objective <= best.objective + ALLOWED && differs
         };
         (0..self.searches.len()).filter(is_apart).collect()
     }

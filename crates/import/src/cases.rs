@@ -2,19 +2,16 @@
 //! that is more than a few letters, or has cases itself, becomes a definition first. What is written then grows as the file does: nested cases
 //! would double with every step.
 
-use super::expression::{ForeignExpr, ForeignKind, ForeignOrder};
+use super::expression::{DEEPEST, ForeignExpr, ForeignKind, ForeignOrder};
 use super::model::{ForeignConstant, ForeignModel, ForeignRate};
 use super::print::{Written, same, without_case};
-use super::reduced::Flags;
+use super::reduced::{Flags, SHORT};
 use super::thin::ThinSets;
 use dashu::base::BitTest;
 use dashu::rational::RBig;
 use palmistry_io::foreign::Budget;
 use palmistry_lang::{Code, Problem};
 use std::collections::{BTreeMap, BTreeSet};
-
-/// A value with more parts than these gets a name before it is written twice.
-pub(super) const SHORT: usize = 40;
 
 /// Values of more bits are not kept: they are no flags.
 const LONGEST: usize = 1 << 14;
@@ -53,6 +50,8 @@ struct Writing<'b> {
     thin: ThinSets,
     flags: Flags,
     has_cases: bool,
+    /// How many comparisons are open that are written by others.
+    deep: usize,
 }
 
 /// Writes out all cases of a model.
@@ -74,6 +73,7 @@ pub(super) fn written_out(model: &ForeignModel, budget: &Budget) -> Result<Uncas
         thin: ThinSets::new(doubles),
         flags: Flags::default(),
         has_cases: has_cases(model),
+        deep: 0,
         values,
         partial: BTreeSet::new(),
         remarks: Vec::new(),
@@ -183,7 +183,27 @@ impl Writing<'_> {
             return Ok(Part { value: of.clone(), size: 1, is_total, has_sign: false });
         }
         if let Some(plain) = self.without_equal_sides(of)? {
-            return self.part(&plain);
+            self.deep += 1;
+            if self.deep > DEEPEST {
+                let problem = Problem::new(
+                    Code::Foreign,
+                    &of.span,
+                    "cases of cases that are nested too deeply",
+                    "this",
+                );
+                return Err(problem.help("compare what stands within max, min, abs or another case itself"));
+            }
+            let part = self.part(&plain);
+            self.deep -= 1;
+            return part;
+        }
+        if let ForeignKind::Product(list) = &of.kind
+            && let Some((_, zero)) = list.iter().find(|(divided, part)| {
+                *divided && part.exact(&|_| None).is_some_and(|value| value == RBig::ZERO)
+            })
+        {
+            return Err(Problem::new(Code::Foreign, &zero.span, "this divides by zero", "this")
+                .help("write what it is to be: all numbers are real and finite"));
         }
         let mut parts = Vec::new();
         for inner in of.parts() {

@@ -214,8 +214,8 @@ fn opposite(one: &ForeignExpr, other: &ForeignExpr) -> bool {
 pub(super) enum Written {
     /// By `abs`, `min` or `max`: each value stands in it once.
     Once(ForeignExpr),
-    /// By `sign`: both values stand in it twice. It is right where both exist everywhere: off the surface on which the sides are
-    /// equal it is then the same, and that surface is thin.
+    /// By `sign`: both values stand in it twice. It is right where both exist everywhere and the sides are equal on a thin set alone, which who
+    /// asks for it has to see to: off that set it is the same.
     BySign(ForeignExpr),
 }
 

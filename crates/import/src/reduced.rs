@@ -1,12 +1,14 @@
 //! Comparisons whose sides can be equal on more than a thin set, by others that say the same: a flag that is compared with a number is its own
 //! condition, `max(x - 1, 0) > 0` is `x - 1 > 0`, and of a number that is zero, one or two any number between them tells what is asked.
 
-use super::cases::SHORT;
 use super::expression::{ForeignExpr, ForeignKind, ForeignOrder};
 use super::functions::case;
 use super::print::same;
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, BTreeSet};
+
+/// A value with more parts than these gets a name before it is written twice.
+pub(super) const SHORT: usize = 40;
 
 /// More values than these are not listed.
 const MOST_VALUES: usize = 64;

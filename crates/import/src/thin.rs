@@ -17,6 +17,9 @@ const MOST_PIECES: usize = 64;
 /// So many pairs of pieces are looked at in a model.
 const MOST_PAIRS: usize = 4_000_000;
 
+/// Of a piece so many conditions are kept in mind: those beyond say less of it.
+const MOST_WAYS: usize = 32;
+
 /// More conditions are not compared with each other.
 const MOST_CONDITIONS: usize = 256;
 
@@ -256,7 +259,10 @@ fn is_zero(piece: &Piece) -> bool {
 }
 
 /// Adds a piece; one of the same values is the same, and says less of its conditions.
-fn add(all: &mut Vec<Piece>, piece: Piece) -> Option<()> {
+fn add(all: &mut Vec<Piece>, mut piece: Piece) -> Option<()> {
+    while piece.ways.len() > MOST_WAYS {
+        piece.ways.pop_first();
+    }
     let alike = |own: &&mut Piece| {
         own.at.iter().zip(&piece.at).all(|(one, other)| one.0.to_bits() == other.0.to_bits())
     };

@@ -84,9 +84,82 @@ fn formulas_are_read_for_what_they_mean() {
     ]);
 }
 
+/// Conditions of several parts, however they are joined; expressions as CasADi shows them.
+#[test]
+fn conditions_and_shared_parts_are_read_for_what_they_mean() {
+    const WITHIN: Values = &[("x", 0.5), ("k", 7.0)];
+    const BEYOND: Values = &[("x", 3.0), ("k", 7.0)];
+    for text in [
+        "x' = Piecewise((2*x, (x > 0) & (x < 1)), (3*k, True))\noutputs: x",
+        "x' = Piecewise((3*k, (x <= 0) | (x >= 1)), (2*x, True))\noutputs: x",
+        "x' = 2*x if x > 0 and x < 1 else 3*k\noutputs: x",
+        "states: x\n@1=((x>0)&&(x<1)), ((@1?(2*x):0)+((!@1)?(3*k):0))\noutputs: x",
+        "states: x\n@1=(x>0), @2=(x<1), ((@1&&@2)?(2*x):(3*k))\noutputs: x",
+    ] {
+        agree(&[
+            ("a.txt", text, WITHIN, &[("x", 1.0)], &[0.5]),
+            ("a.txt", text, BEYOND, &[("x", 21.0)], &[3.0]),
+        ]);
+    }
+    for text in [
+        "@ODEmodel(x'(t) = ifelse(x(t) > 0 && x(t) < 1, 2*x(t), 3*k), y(t) = x(t))",
+        "@ODEmodel(x'(t) = ifelse((x(t) > 0) & (x(t) < 1) | (x(t) > 9), 2*x(t), 3*k), y(t) = x(t))",
+        "@ODEmodel(x'(t) = (x(t) < 0 || x(t) > 1 ? 3*k : 2*x(t)), y(t) = x(t))",
+    ] {
+        agree(&[
+            ("a.jl", text, WITHIN, &[("x", 1.0)], &[0.5]),
+            ("a.jl", text, BEYOND, &[("x", 21.0)], &[3.0]),
+        ]);
+    }
+    let sine = 2.0_f64.sin();
+    let square: &'static [(&str, f64)] = Box::leak(Box::new([("x", sine * sine), ("y", 5.0)]));
+    agree(&[
+        ("a.txt", "states: x, y\nSX(@1=sin(x), [(@1*@1), y])", &[("x", 2.0), ("y", 5.0)], square, &[]),
+        ("a.txt", "states: x\nSX((x*y))", &[("x", 2.0), ("y", 5.0)], &[("x", 10.0)], &[]),
+        // time by its other name, and names of functions that a line names
+        (
+            "a.txt",
+            "x' = -x + 2*time\noutputs: x",
+            &[("x", 3.0), ("time", 4.0)],
+            &[("x", 5.0), ("time", 1.0)],
+            &[3.0, 4.0],
+        ),
+        (
+            "a.txt",
+            "x' = -x*exp + sec\nparameters: exp, sec\noutputs: x",
+            &[("x", 3.0), ("exp", 4.0), ("sec", 7.0)],
+            &[("x", -5.0)],
+            &[3.0],
+        ),
+    ]);
+}
+
 #[test]
 fn models_of_julia_are_read_for_what_they_mean() {
     agree(&[
+        // lists that are put together, each as it is where the system is made
+        (
+            "a.jl",
+            "@parameters k\n@variables t x(t) y(t)\nD = Differential(t)\neqs = [D(x) ~ -k*x]\nmore = [D(y) ~ -y]\neqs = [eqs; more]\n@named sys = ODESystem(collect(eqs), t)",
+            &[("x", 2.0), ("y", 5.0), ("k", 3.0)],
+            &[("x", -6.0), ("y", -5.0)],
+            &[],
+        ),
+        (
+            "a.jl",
+            "@parameters k\n@variables t x(t) y(t)\nD = Differential(t)\neqs = [D(x) ~ -k*x]\nmore = [D(y) ~ -y]\n@named sys = ODESystem(vcat(eqs, more), t)",
+            &[("x", 2.0), ("y", 5.0), ("k", 3.0)],
+            &[("x", -6.0), ("y", -5.0)],
+            &[],
+        ),
+        // the list that is made last, and values that are assigned below everything
+        (
+            "a.jl",
+            "@parameters k\n@variables t x(t) y(t)\nD = Differential(t)\neqs = [D(y) ~ -y]\neqs = [D(x) ~ -k*x]\n@named sys = ODESystem(eqs, t)\nk = 2.0",
+            &[("x", 2.0), ("k", 3.0)],
+            &[("x", -6.0)],
+            &[],
+        ),
         // the base of a logarithm stands in front: log(2, 8) = 3
         ("a.jl", "@ODEmodel(x'(t) = log(2, x(t)), y(t) = x(t))", &[("x", 8.0)], &[("x", 3.0)], &[8.0]),
         // two ways to write one letter, and a letter with its mark in two ways
@@ -260,6 +333,24 @@ fn scripts_of_python_are_read_for_what_they_mean() {
             &[("x1", 41.0), ("x2", 9.0)],
             &[5.0],
         ),
+        // a list that was an element of another one, and is another list now
+        (
+            "a.py",
+            script!("x = [x1, x2]\nrow = [x1]\nh = [row, [x2]]\nrow = [k*x1]\nrow.append(c*x2)\nf = row\n"),
+            VALUES,
+            &[("x1", 6.0), ("x2", 35.0)],
+            &[2.0, 5.0],
+        ),
+        // numbers of SymPy
+        (
+            "a.py",
+            script!(
+                "x = [x1, x2]\nf = [sym.Rational('1/2')*x1 + sym.Integer(3), sym.S('1/5')*x2 + sym.Float('0.5', 20)]\nh = [x1*sym.S('2')]\n"
+            ),
+            VALUES,
+            &[("x1", 4.0), ("x2", 1.5)],
+            &[4.0],
+        ),
         (
             "a.py",
             script!("x = [[x1], [x2]]\nf = [[sym.factor(k*x1)], [sym.S(2)*c]]\nh = [x[0][0]]\n"),
@@ -284,6 +375,100 @@ fn what_is_written_is_what_was_read() {
     }
 }
 
+/// A case is written by `sign` only where its sides are equal on a thin set alone: `sign` has no value where its argument is zero.
+#[test]
+fn cases_have_values_on_all_but_thin_sets() {
+    let flag = "a = Piecewise((1, x > 1), (0, True))\n";
+    for (name, text, wanted) in [
+        (
+            "a.jl",
+            "@ODEmodel(x'(t) = ifelse(max(x(t)-1,0) > 0, -k*x(t), -c), y(t) = x(t))".to_owned(),
+            "x' = (-k*x - c)/2 + sign(x - 1)*(-k*x + c)/2",
+        ),
+        (
+            "a.jl",
+            "@ODEmodel(x'(t) = ifelse(B < max(B,A), -k*x(t), -c), y(t) = x(t))".to_owned(),
+            "sign(A - B)",
+        ),
+        (
+            "a.jl",
+            "@ODEmodel(x'(t) = ifelse(A >= max(B,A), k, c*x(t)), y(t) = x(t))".to_owned(),
+            "sign(A - B)",
+        ),
+        (
+            "a.jl",
+            "@ODEmodel(x'(t) = ifelse(min(x(t), B) < B, k, c*x(t)), y(t) = x(t))".to_owned(),
+            "sign(B - x)",
+        ),
+        (
+            "a.jl",
+            "@ODEmodel(x'(t) = k*sign(max(x(t)-1,0)), y(t) = x(t))".to_owned(),
+            "k*(1/2 + sign(x - 1)/2)",
+        ),
+        (
+            "a.jl",
+            "@ODEmodel(x'(t) = ifelse(abs(max(x(t)-1,0)) > 0, k, c*x(t)), y(t) = x(t))".to_owned(),
+            "sign(x - 1)",
+        ),
+        // what is never less, and is equal on half of the space
+        ("a.jl", "@ODEmodel(x'(t) = ifelse(max(x(t), 0) >= 0, k, c), y(t) = x(t))".to_owned(), "x' = k\n"),
+        (
+            "a.txt",
+            format!("{flag}x' = Piecewise((k*x, a > 0), (c, True))\noutputs: x"),
+            "x' = (k*x + c)/2 + sign(x - 1)*(k*x - c)/2",
+        ),
+        (
+            "a.txt",
+            format!("{flag}x' = Piecewise((k*x, a <= 0), (c, True))\noutputs: x"),
+            "x' = (c + k*x)/2 + sign(x - 1)*(c - k*x)/2",
+        ),
+        (
+            "a.txt",
+            format!(
+                "{flag}b = Piecewise((1, x < 3), (0, True))\nx' = Piecewise((k*x, a*b > 0), (c, True))\noutputs: x"
+            ),
+            "sign(a*b - 0.5)",
+        ),
+        (
+            "a.txt",
+            format!(
+                "{flag}b = Piecewise((1, x < 3), (0, True))\nx' = Piecewise((k*x, a + b < 2), (c, True))\noutputs: x"
+            ),
+            "sign(1.5 - (a + b))",
+        ),
+        // equal on a thin set alone
+        (
+            "a.txt",
+            "x' = Piecewise((k*x, max(x, 0) > c), (c, True))\noutputs: x".to_owned(),
+            "sign(max(x, 0) - c)",
+        ),
+        ("a.txt", "x' = Piecewise((k*x, abs(x) > 0), (c, True))\noutputs: x".to_owned(), "sign(abs(x))"),
+    ] {
+        let read = import(name, &text, &ImportQuestion::default())
+            .unwrap_or_else(|why| panic!("{}; {}\n{text}", why.message, why.help.unwrap_or_default()));
+        assert!(read.text.contains(wanted), "{text}\n{}", read.text);
+    }
+}
+
+/// Words that ask something of a model are no names: they are renamed, and what is written can be read.
+#[test]
+fn words_that_ask_are_renamed() {
+    for word in
+        ["observable", "unobservable", "identifiable", "unidentifiable", "solutions", "codistribution"]
+    {
+        let declared =
+            format!("system \"a\"\n\nstate {word}\n\ndrift f\n  {word}' = -{word}\n\noutput {word}\n");
+        let read = palmistry_lang::System::parse("a.proof", &declared, std::path::Path::new(""));
+        assert!(read.is_err(), "'{word}' is a name: take it out of the list\n{declared}");
+        let text = format!("{word}' = -k*{word}\noutputs: {word}");
+        let read = import("a.txt", &text, &ImportQuestion::default()).unwrap();
+        assert!(read.text.contains(&format!("state {word}_\n")), "{}", read.text);
+        let text = format!("x' = -{word}*x\noutputs: x");
+        let read = import("a.txt", &text, &ImportQuestion::default()).unwrap();
+        assert!(read.text.contains(&format!("x' = -{word}_*x\n")), "{}", read.text);
+    }
+}
+
 /// What is assumed is said.
 #[test]
 fn what_is_assumed_is_said() {
@@ -299,6 +484,16 @@ fn what_is_assumed_is_said() {
             "a.jl",
             "@parameters k\n@variables t x(t) z(t)\nD = Differential(t)\na = [D(x) ~ -k*x]\nb = [D(z) ~ -z]",
             "several lists are read as one system: a, b",
+        ),
+        (
+            "a.m",
+            "function dx = lin(t, x)\ndx = -x;\nend\n",
+            "used as a whole, and read as one number each: 'x'",
+        ),
+        (
+            "a.m",
+            "function dx = lin(t, x, k)\ndx = [-k*x(1); k*x(1) - x(2)];\nend\n",
+            "used as a whole, and read as one number each: 'k'",
         ),
     ] {
         let read = import(name, text, &ImportQuestion::default()).unwrap();

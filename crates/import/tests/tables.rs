@@ -100,6 +100,73 @@ fn held_species_are_amounts() {
     assert_eq!(rates(&text, &[("A", 1.0), ("k", 5.0)]), named(&[("A", 10.0)]));
 }
 
+/// A flag that is compared with a number is its own condition: `sign` of a flag has no value on half of the space.
+#[test]
+fn flags_are_their_conditions() {
+    let x = species("x", "initialConcentration=\"1\"", false);
+    let compare = |sign: &str, left: &str, right: &str| format!("<apply><{sign}/>{left}{right}</apply>");
+    let either = |then: &str, condition: &str, otherwise: &str| {
+        format!("<piecewise><piece>{then}{condition}</piece><otherwise>{otherwise}</otherwise></piecewise>")
+    };
+    let above = compare("gt", "<ci>x</ci>", "<cn>1</cn>");
+    let flag = either("<cn>1</cn>", &above, "<cn>0</cn>");
+    let on = "<parameter id=\"on\" constant=\"false\"/>";
+    for (condition, wanted) in [
+        (compare("gt", "<ci>on</ci>", "<cn>0</cn>"), "sign(x - 1)"),
+        (compare("geq", "<ci>on</ci>", "<cn>1</cn>"), "sign(x - 1)"),
+        (compare("eq", "<ci>on</ci>", "<cn>1</cn>"), "sign(x - 1)"),
+        (
+            compare("gt", "<apply><plus/><ci>on</ci><ci>on</ci></apply>", "<cn>0</cn>"),
+            "sign(on_ + on_ - 0.5)",
+        ),
+    ] {
+        let law = either("<apply><times/><ci>k</ci><ci>x</ci></apply>", &condition, "<ci>g</ci>");
+        let text =
+            sbml(&x, &[("k", "1"), ("g", "2")], &(rule("assignmentRule", "on", &flag) + &makes("x", &law)));
+        let text = text.replace("</listOfParameters>", &format!("{on}</listOfParameters>"));
+        let read = import("a.xml", &text, &ImportQuestion::default())
+            .unwrap_or_else(|why| panic!("{}; {}\n{text}", why.message, why.help.unwrap_or_default()));
+        assert!(read.text.contains(wanted) && !read.text.contains("sign(on_)"), "{condition}\n{}", read.text);
+        for (x, value) in [(3.0, 15.0 / 2.0), (0.5, 3.5)] {
+            let values: common::Values = if x > 1.0 {
+                &[("x", 3.0), ("k", 5.0), ("g", 7.0), ("c", 2.0)]
+            } else {
+                &[("x", 0.5), ("k", 5.0), ("g", 7.0), ("c", 2.0)]
+            };
+            assert_eq!(rates(&text, values), named(&[("x", value)]), "{text}");
+        }
+    }
+}
+
+/// Level 3 has the functions of a model in any order; those that go round in a circle are refused.
+#[test]
+fn functions_stand_in_any_order() {
+    let function = |id: &str, body: &str| {
+        let lambda = format!("<lambda><bvar><ci>a</ci></bvar>{body}</lambda>");
+        format!("<functionDefinition id=\"{id}\">{}</functionDefinition>", math(&lambda))
+    };
+    let of = |name: &str| format!("<apply><ci>{name}</ci><ci>a</ci></apply>");
+    let x = species("x", "initialConcentration=\"1\"", false);
+    let with = |functions: &str| {
+        let law = "<apply><ci>first</ci><ci>x</ci></apply>";
+        sbml(&x, &[], &makes("x", law)).replace(
+            "<listOfCompartments>",
+            &format!(
+                "<listOfFunctionDefinitions>{functions}</listOfFunctionDefinitions><listOfCompartments>"
+            ),
+        )
+    };
+    let twice = "<apply><times/><cn>2</cn><ci>a</ci></apply>";
+    let text = with(
+        &(function("first", &of("second")) + &function("second", &of("third")) + &function("third", twice)),
+    );
+    // 2 x makes x in a compartment of size 2
+    assert_eq!(rates(&text, &[("x", 3.0), ("c", 2.0)]), named(&[("x", 3.0)]));
+    let text = with(&(function("first", &of("second")) + &function("second", &of("first"))));
+    let why = import("a.xml", &text, &ImportQuestion::default()).unwrap_err();
+    assert!(why.message.contains("nothing says what the function"), "{}", why.message);
+}
+
 /// Conditions of several parts, and equality of constants.
 #[test]
 fn conditions_are_read() {

@@ -15,7 +15,7 @@ pub struct CramerRaoBound {
     pub deviations: Vec<f64>,
     /// The largest singular value of the scaled `J` over the smallest.
     pub condition: f64,
-    /// The covariance; none where a direction is unobservable.
+    /// The covariance; none where a direction is unobservable, or a variance is no double above zero.
     pub covariance: Option<DMatrix<f64>>,
     /// The combination of unknowns that is determined worst, of length one, in units of the unknowns' sizes.
     pub weakest: Vec<f64>,
@@ -66,7 +66,8 @@ pub fn cramer_rao(slopes: &DMatrix<f64>, sigma: f64, sizes: &[f64]) -> CramerRao
         covariance: unobserved
             .is_empty()
             .then(|| DMatrix::from_fn(p, p, entry))
-            .filter(|own| own.iter().all(|value| value.is_finite())),
+            .filter(|own| own.iter().all(|value| value.is_finite()))
+            .filter(|own| sigma <= 0.0 || own.diagonal().iter().all(|variance| *variance > 0.0)),
         weakest,
     }
 }
@@ -100,6 +101,7 @@ mod tests {
         // and of one that no double holds nothing is known
         let beyond = cramer_rao(&DMatrix::from_element(2, 1, 1e300), 1e-300, &[1e-300]).deviations[0];
         assert_eq!(beyond, f64::INFINITY);
+        assert_eq!(cramer_rao(&DMatrix::from_element(2, 1, 1e200), 1e-9, &[1.0]).covariance, None);
     }
 
     /// Two unknowns of which only the sum is measured, and a third that is measured: the third is observable.

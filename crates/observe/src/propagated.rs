@@ -3,16 +3,20 @@
 //! With `F` the derivative of the state at a sample by the unknowns of the first one, the state there has the covariance `F P F^T` (A. H. Jazwinski, Stochastic
 //! Processes and Filtering Theory, 1970, section 5.3): the Cramér-Rao bound for what is a function of the unknowns.
 
+use super::filtered;
 use super::flow::Sample;
 use super::learned::Spread;
 use super::task::Task;
-use nalgebra::DMatrix;
+use nalgebra::{Cholesky, DMatrix};
 
-/// The deviations of the estimated states at a sample, from the covariance of the unknowns.
+/// The deviations of the estimated states at a sample, from the covariance of the unknowns: by a factor of it, where it has one in doubles, since sums of squares cannot
+/// be rounded to below nothing; a variance that is, or that is no number, says that nothing is known.
 pub(super) fn deviations(sample: &Sample, covariance: &DMatrix<f64>, sought: usize) -> Vec<f64> {
-    let carried = &sample.slopes * covariance;
-    let variance = |i: usize| carried.row(i).dot(&sample.slopes.row(i));
-    (0..sought).map(|i| variance(i).max(0.0).sqrt()).collect()
+    let all = match Cholesky::new(covariance.clone()) {
+        Some(root) => filtered::deviations(&(&sample.slopes * root.l())),
+        None => filtered::of_variances(&(&sample.slopes * covariance * sample.slopes.transpose()).diagonal()),
+    };
+    all.iter().take(sought).map(|own| if own.is_nan() { f64::INFINITY } else { *own }).collect()
 }
 
 /// How well the whole state is known at the sample of a `row`, from so many `measurements`.

@@ -153,6 +153,27 @@ impl ScriptWorkspace<'_> {
                 self.value(inner)
             }
             ("collect", [inner]) if self.dialect == Dialect::Matlab => self.value(inner),
+            // a number as a text is that number exactly
+            (
+                "Rational" | "S" | "sympify" | "Integer",
+                [Syntax { kind: SyntaxKind::Text(text), span: place }],
+            ) if text.contains('/') || name == "Rational" => {
+                let (top, bottom) = text.split_once('/').unwrap_or((text, "1"));
+                let top = ForeignExpr::number(top.trim(), place)?;
+                let bottom = ForeignExpr::number(bottom.trim(), place)?;
+                let value = top.as_number().zip(bottom.as_number());
+                let value = value.and_then(|(top, bottom)| functions::fraction(top, bottom, span));
+                let value = value.ok_or_else(|| {
+                    Problem::new(Code::Foreign, place, format!("'{text}' is no number"), "this")
+                        .help("write a fraction of two numbers")
+                })?;
+                made_number(name, value, &[], span).map(ScriptValue::One)
+            }
+            ("S" | "sympify", [Syntax { kind: SyntaxKind::Text(text), span: place }])
+                if module.is_some() || self.from_sympy.contains(name) =>
+            {
+                ForeignExpr::number(text.trim(), place).map(ScriptValue::One)
+            }
             (_, [inner])
                 if keeps_the_value(syntax) || self.from_sympy.contains(name) && KEPT.contains(&name) =>
             {
@@ -222,27 +243,6 @@ impl ScriptWorkspace<'_> {
                     Ok([one]) => ScriptValue::One(one),
                     Err(entries) => ScriptValue::Many { rows: entries.len(), entries, form: Form::List },
                 })
-            }
-            // a number as a text is that number exactly
-            (
-                "Rational" | "S" | "sympify" | "Integer",
-                [Syntax { kind: SyntaxKind::Text(text), span: place }],
-            ) if text.contains('/') || name == "Rational" => {
-                let (top, bottom) = text.split_once('/').unwrap_or((text, "1"));
-                let top = ForeignExpr::number(top.trim(), place)?;
-                let bottom = ForeignExpr::number(bottom.trim(), place)?;
-                let value = top.as_number().zip(bottom.as_number());
-                let value = value.and_then(|(top, bottom)| functions::fraction(top, bottom, span));
-                let value = value.ok_or_else(|| {
-                    Problem::new(Code::Foreign, place, format!("'{text}' is no number"), "this")
-                        .help("write a fraction of two numbers")
-                })?;
-                made_number(name, value, &[], span).map(ScriptValue::One)
-            }
-            ("S" | "sympify", [Syntax { kind: SyntaxKind::Text(text), span: place }])
-                if module.is_some() || self.from_sympy.contains(name) =>
-            {
-                ForeignExpr::number(text.trim(), place).map(ScriptValue::One)
             }
             ("Rational", [top, bottom]) => {
                 let (top, bottom) = (self.one(top)?, self.one(bottom)?);

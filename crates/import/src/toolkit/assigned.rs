@@ -2,7 +2,6 @@
 //! make another model of the file, and is refused.
 
 use super::declared::Declared;
-use super::systems::Equations;
 use crate::script::{Token, TokenKind};
 use palmistry_lang::{Code, Problem};
 use std::collections::BTreeSet;
@@ -18,6 +17,9 @@ pub(super) struct Assignment {
 
 /// Signs that assign.
 const ASSIGNING: [&str; 5] = ["=", "+=", "-=", "*=", "/="];
+
+/// More tokens than these are no index.
+const LONGEST_INDEX: usize = 200;
 
 /// Words behind which a statement begins in the same line.
 const BEFORE: [&str; 9] = ["const", "global", "local", "let", "begin", "else", "try", "do", "finally"];
@@ -86,7 +88,13 @@ pub(super) fn assignments(words: &[Token], declared: &Declared) -> Vec<Assignmen
                 }
             };
             if let Some(end) = end.filter(|end| assigns(*end) && (in_chain || begins)) {
-                let right = end + 1..end_of_statement(words, end + 1);
+                // what is assigned to several names ends once
+                let known = found.last().map(|one: &Assignment| one.right.clone());
+                let stop = match known.filter(|right| right.contains(&end)) {
+                    Some(right) => right.end,
+                    None => end_of_statement(words, end + 1),
+                };
+                let right = end + 1..stop;
                 let names = (at..end).filter(|at| words[*at].kind == TokenKind::Name);
                 found.extend(names.map(|name| Assignment { name, right: right.clone() }));
             }
@@ -103,14 +111,13 @@ pub(super) fn assignments(words: &[Token], declared: &Declared) -> Vec<Assignmen
     found
 }
 
-/// Refuses assignments to names that are declared, above equations: what the equations have is then the value, and no symbol.
+/// Refuses assignments to names that are declared, above the last list of equations, which begins at a token: what the equations have is then the value, and no symbol.
 pub(super) fn refuse_assigned(
     words: &[Token],
     assignments: &[Assignment],
     declared: &Declared,
-    lists: &[Equations],
+    last: usize,
 ) -> Result<(), Problem> {
-    let last = lists.iter().map(|list| list.at).max().unwrap_or(0);
     for one in assignments.iter().filter(|one| one.name < last) {
         let name = &words[one.name].text;
         let (is_parameter, is_variable) =
@@ -135,8 +142,7 @@ pub(super) fn refuse_assigned(
 }
 
 /// Refuses what changes a list of equations in its place: `append!(eqs, more)`, `eqs[1] = other`.
-pub(super) fn refuse_changed(words: &[Token], lists: &[Equations]) -> Result<(), Problem> {
-    let named: BTreeSet<&str> = lists.iter().filter_map(|list| list.name.as_deref()).collect();
+pub(super) fn refuse_changed(words: &[Token], named: &BTreeSet<&str>) -> Result<(), Problem> {
     let refused = |name: &Token, by: &str| {
         let message = format!("the equations '{}' are changed by {by}, which is not read", name.text);
         Err(Problem::new(Code::Foreign, &name.span, message, "this")
@@ -153,7 +159,7 @@ pub(super) fn refuse_changed(words: &[Token], lists: &[Equations]) -> Result<(),
         }
         let is_index = words.get(at + 1).is_some_and(|next| next.is("[") && !next.spaced);
         if is_index
-            && let Some(close) = closing(words, at + 1)
+            && let Some(close) = closing(&words[..words.len().min(at + LONGEST_INDEX)], at + 1)
             && words.get(close + 1).is_some_and(|next| ASSIGNING.iter().any(|sign| next.is(sign)))
         {
             return refused(word, "an assignment to an element");

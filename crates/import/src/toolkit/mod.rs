@@ -38,8 +38,9 @@ pub(super) fn read(
     refuse_steps(words)?;
     refuse_unread(words)?;
     let assigned = assignments(words, &declared);
-    refuse_assigned(words, &assigned, &declared, &lists)?;
-    refuse_changed(words, &lists)?;
+    let last = lists.iter().map(|list| list.at).max().unwrap_or(0);
+    refuse_assigned(words, &assigned, &declared, last)?;
+    refuse_changed(words, &lists.iter().filter_map(|list| list.name.as_deref()).collect())?;
     let file = systems::File { words, lists: &lists, assigned: &assigned, budget };
     let (which, remark) = systems::chosen(&file, &declared, which)?;
     let mut model = ForeignModel::default();

@@ -308,7 +308,7 @@ impl File<'_> {
         let mut found = BTreeSet::new();
         let mut open = vec![(range.clone(), before)];
         while let Some((part, before)) = open.pop() {
-            pay(self.lists.len() + self.assigned.len() + part.len())?;
+            pay(self.lists.len() + self.assigned.len() + 10 * part.len())?;
             let refused = |part: &Range<usize>| {
                 let place = words[part.start].span.start..words[part.end - 1].span.end;
                 let message =

@@ -108,14 +108,6 @@ fn a_guess_of_which_nothing_is_known_makes_no_filter_certain() {
             Unscented { prior, ..Unscented::default() }.observe(&task),
         ];
         for track in &all {
-            println!(
-                "{prior:e} passes {} unobserved {} {:?} {:?} {:?}",
-                track.passes(),
-                track.unobserved,
-                track.innovations,
-                track.last(),
-                track.remarks
-            );
             is_honest(track, prior);
         }
         assert!(prior < 1e200 || all.iter().all(|track| !track.passes()), "{prior:e}");

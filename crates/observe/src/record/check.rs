@@ -2,6 +2,7 @@
 
 use super::spike::spikes;
 use super::{Cell, Fault, FaultKind, FaultRules, MOST_FAULTS, OnFault, ReadRecord, RecordError, RecordRows};
+use crate::Interpolation;
 use std::collections::BTreeSet;
 
 impl RecordRows {
@@ -71,7 +72,8 @@ pub fn faults_of(rows: &RecordRows, rules: &FaultRules) -> Vec<Fault> {
             rows.fault(row, Some(column), FaultKind::Spike { value, departure })
         };
         let left = room(&faults);
-        faults.extend(spikes(&series, rules.spike, resolution).into_iter().map(spike).take(left));
+        let is_held = rules.interpolation == Interpolation::Hold;
+        faults.extend(spikes(&series, rules.spike, resolution, is_held).into_iter().map(spike).take(left));
     }
     faults.sort_by_key(|fault| fault.row);
     faults

@@ -13,6 +13,11 @@
 //! A fault returns to where it was, and a jump stays: what a body does that falls from one stable pose into another is none. So a value that lies between its neighbours is no
 //! spike, nor one at a jump between two smooth stretches that belongs to either ([`stays`]).
 //!
+//! The first and the last value have neighbours on one side only. They are spikes where what is left without them is smooth there, and no change elsewhere in the
+//! column is as large ([`is_alone`]): else they belong to a fast motion, or are another step of a command. For the same reason more than [`MOST_TOGETHER`] close
+//! together are none where the measurements between them change as much as they are off: a motion that is faster than the samples ([`without_motion`]). A held command's first step may be its last value: there only what has neighbours on both
+//! sides is judged.
+//!
 //! What follows: a spike has to be larger among the five measurements at either end, which are foretold less well; with
 //! fewer than [`FEWEST`] measurements there is no judgement; where a quarter of the measurements or more are spikes, they are
 //! what is usual; a measurement between two spikes can be taken for one too; several wrong measurements in a row that agree are
@@ -37,12 +42,24 @@ const AT_AN_END: [[isize; 5]; 2] = [[2, 3, 4, 5, 6], [3, 4, 5, 6, 7]];
 /// How far away those neighbours are at most.
 const REACH: usize = 5;
 
+/// More spikes than these that are this close together may be a motion that is faster than the samples.
+const MOST_TOGETHER: usize = 3;
+const CLOSE: usize = 4;
+
+/// A change from one measurement to the next is as large as another where it is more than this part of it.
+const AS_LARGE: f64 = 0.5;
+
 /// How far away the neighbours are at the ends: what is farther from a measurement has no say in its departure.
 const FARTHEST: usize = 7;
 
 /// The spikes among pairs of time and value, times increasing and all finite: index, and how many usual departures it
-/// is off. They come in no particular order.
-pub(super) fn spikes(series: &[(f64, f64)], threshold: f64, resolution: f64) -> Vec<(usize, f64)> {
+/// is off. They come in the order of their indices. The first and the last value of a column that `is_held` from sample to sample are not judged.
+pub(super) fn spikes(
+    series: &[(f64, f64)],
+    threshold: f64,
+    resolution: f64,
+    is_held: bool,
+) -> Vec<(usize, f64)> {
     let size = series.iter().fold(0.0, |size: f64, (_, value)| size.max(value.abs()));
     let floor = (0.3 * resolution).max(1e-9 * size).max(f64::MIN_POSITIVE);
     let mut found = Vec::new();
@@ -56,9 +73,16 @@ pub(super) fn spikes(series: &[(f64, f64)], threshold: f64, resolution: f64) -> 
             .map(|(at, (_, known))| known.unwrap_or_else(|| departure(&points, at)))
             .collect();
         let usual = usual_departure(&departures).max(floor);
-        let score = |at: usize| match stays(&points, at) {
-            true => 0.0,
-            false => departures[at] / usual.max(change_nearby(&points, at) / 10.0),
+        let by_itself =
+            |points: &[(f64, f64)], at: usize, own: f64| own / usual.max(change_nearby(points, at) / 10.0);
+        let is_fast = |rest: &[(f64, f64)], at: usize| {
+            !stays(rest, at) && by_itself(rest, at, departure(rest, at)) > threshold
+        };
+        let score = |at: usize| match by_itself(&points, at, departures[at]) {
+            own if own <= threshold => own,
+            _ if stays(&points, at) => 0.0,
+            _ if is_end(&points, at) && (is_held || !is_alone(&points, at, is_fast)) => 0.0,
+            own => own,
         };
         let scores: Vec<f64> = (0..points.len()).map(score).collect();
         // the worst first: a measurement with spikes on either side of it has yet to be foretold without them
@@ -69,7 +93,11 @@ pub(super) fn spikes(series: &[(f64, f64)], threshold: f64, resolution: f64) -> 
         if spikes.is_empty() {
             break;
         }
-        found.extend(spikes.iter().map(|at| (left[*at].0, scores[*at])));
+        found.extend(spikes.iter().map(|at| Spike {
+            index: left[*at].0,
+            score: scores[*at],
+            off: departures[*at],
+        }));
         let kept = (0..left.len()).filter(|at| !spikes.contains(at));
         left = kept
             .map(|at| {
@@ -78,7 +106,57 @@ pub(super) fn spikes(series: &[(f64, f64)], threshold: f64, resolution: f64) -> 
             })
             .collect();
     }
-    found
+    let left: Vec<usize> = left.into_iter().map(|(index, _)| index).collect();
+    without_motion(series, &left, found)
+}
+
+/// A value that is far from what its neighbours foretell: its place, how many usual departures it is off, and its departure.
+struct Spike {
+    index: usize,
+    score: f64,
+    off: f64,
+}
+
+/// Whether a value has neighbours on one side only.
+fn is_end(points: &[(f64, f64)], at: usize) -> bool {
+    at == 0 || at + 1 == points.len()
+}
+
+/// Whether a first or last value is the only one that is off: the value that is then first or last is not `is_fast`, and no change elsewhere is as large as the one
+/// to its neighbour.
+fn is_alone(points: &[(f64, f64)], at: usize, is_fast: impl Fn(&[(f64, f64)], usize) -> bool) -> bool {
+    let (rest, next) = match at {
+        0 => (&points[1..], 0),
+        _ => (&points[..at], at - 1),
+    };
+    let own = (points[at].1 - rest[next].1).abs();
+    let largest = rest.windows(2).map(|pair| (pair[1].1 - pair[0].1).abs()).fold(0.0, f64::max);
+    largest < AS_LARGE * own && !is_fast(rest, next)
+}
+
+/// Spikes without those that are a motion faster than the samples, in the order of their indices: more than [`MOST_TOGETHER`] close together, among measurements that
+/// change from one to the next by as much as they are off.
+fn without_motion(series: &[(f64, f64)], left: &[usize], mut found: Vec<Spike>) -> Vec<(usize, f64)> {
+    found.sort_by_key(|spike| spike.index);
+    let together = found.chunk_by(|before, after| after.index - before.index <= CLOSE);
+    let kept = together.filter(|run| run.len() <= MOST_TOGETHER || !is_motion(series, left, run));
+    kept.flatten().map(|spike| (spike.index, spike.score)).collect()
+}
+
+/// Whether what is left about some spikes usually changes by as much as these are usually off.
+fn is_motion(series: &[(f64, f64)], left: &[usize], run: &[Spike]) -> bool {
+    let place = |index: usize| left.partition_point(|other| *other < index);
+    let from = place(run[0].index).saturating_sub(SIDE);
+    let to = (place(run[run.len() - 1].index) + SIDE).min(left.len());
+    let changes = left[from..to].windows(2).map(|pair| (series[pair[1]].1 - series[pair[0]].1).abs());
+    median(changes) > AS_LARGE * median(run.iter().map(|spike| spike.off))
+}
+
+/// The value in the middle, the lower one of two; zero of none.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
 }
 
 /// Whether a value goes where the values after it are, as a body does that falls into another stable pose: it lies between its neighbours, or it is at a jump from one
@@ -166,8 +244,7 @@ fn change_nearby(points: &[(f64, f64)], at: usize) -> f64 {
     };
     let mut changes = side(at.saturating_sub(3)..at);
     changes.extend(side(at + 1..at + 4));
-    changes.sort_by(f64::total_cmp);
-    changes.get(changes.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
+    median(changes.into_iter())
 }
 
 #[cfg(test)]
@@ -192,9 +269,7 @@ mod tests {
     }
 
     fn indices(series: &[(f64, f64)]) -> Vec<usize> {
-        let mut found: Vec<usize> = spikes(series, 8.0, 0.0).into_iter().map(|(at, _)| at).collect();
-        found.sort_unstable();
-        found
+        spikes(series, 8.0, 0.0, false).into_iter().map(|(at, _)| at).collect()
     }
 
     #[test]
@@ -255,7 +330,7 @@ mod tests {
             assert_eq!(indices(&exact), [0usize; 0], "{fold} {after}");
             let grid = 1e-4;
             let rounded: Vec<_> = exact.iter().map(|(t, v)| (*t, (v / grid).round() * grid)).collect();
-            assert_eq!(spikes(&rounded, 8.0, grid), [], "{fold} {after}");
+            assert_eq!(spikes(&rounded, 8.0, grid, false), [], "{fold} {after}");
             let at = exact.iter().position(|(t, _)| *t >= fold).unwrap();
             for wrong in [at - 2, at - 1, at, at + 1] {
                 let mut series = exact.clone();
@@ -263,6 +338,65 @@ mod tests {
                 assert_eq!(indices(&series), [wrong], "{fold} {after}");
             }
         }
+    }
+
+    /// Decays from the first sample, and growths to the last, that fall by some factor from sample to sample; with noise, and rounded to six digits behind the point. A
+    /// fault where they are slow again is told.
+    #[test]
+    fn fast_motions_at_an_end_are_no_spikes() {
+        for (rate, seed) in
+            [0.3, 1.0, 2.0, 3.0, 5.0].into_iter().flat_map(|rate| (0..20).map(move |s| (rate, s)))
+        {
+            let errors = noise(seed, 41);
+            let value = |i: usize| 2.0 * (-rate * i as f64).exp() + 1e-4 * errors[i];
+            let falls: Vec<_> = (0..41).map(|i| (i as f64, (value(i) * 1e6).round() / 1e6)).collect();
+            let grows: Vec<_> = (0..41).map(|i| (i as f64, falls[40 - i].1)).collect();
+            assert_eq!(indices(&falls), [0usize; 0], "{rate} {seed}");
+            assert_eq!(indices(&grows), [0usize; 0], "{rate} {seed}");
+            let mut faulty = falls.clone();
+            faulty[30].1 += 0.5;
+            assert_eq!(indices(&faulty), [30], "{rate} {seed}");
+        }
+    }
+
+    /// A motion that rings and has died away by the first tenth of the samples: its values are far off what their neighbours foretell.
+    #[test]
+    fn a_motion_faster_than_its_samples_is_no_spike() {
+        for (phase, seed) in
+            [0.0, 0.4, 0.9, 1.5].into_iter().flat_map(|phase| (0..10).map(move |s| (phase, s)))
+        {
+            let errors = noise(seed, 200);
+            let ringing = |i: usize| (-0.3 * i as f64).exp() * (2.5 * i as f64 + phase).cos();
+            let mut series: Vec<_> = (0..200).map(|i| (i as f64, ringing(i) + 1e-3 * errors[i])).collect();
+            assert_eq!(indices(&series), [0usize; 0], "{phase} {seed}");
+            series[150].1 += 0.5;
+            assert_eq!(indices(&series), [150], "{phase} {seed}");
+        }
+    }
+
+    /// Faults close together are told where the motion is slow.
+    #[test]
+    fn many_faults_in_a_slow_motion_are_told() {
+        let wrong = [100, 104, 108, 112, 116, 120, 200, 203, 206, 209];
+        let mut series = sampled(400, |t| (5.0 * t).sin());
+        wrong.iter().enumerate().for_each(|(i, at)| series[*at].1 += if i % 2 == 0 { 0.5 } else { -0.7 });
+        assert_eq!(indices(&series), wrong);
+    }
+
+    /// A command that changes its sign every ten samples, last in the last one; and one that is stepped once.
+    #[test]
+    fn the_last_step_of_a_command_is_no_spike() {
+        let mut square: Vec<_> =
+            (0..41).map(|i| (i as f64, if i / 10 % 2 == 0 { 1.0 } else { -1.0 })).collect();
+        assert_eq!(indices(&square), [0usize; 0]);
+        let back: Vec<_> = (0..41).map(|i| (i as f64, square[40 - i].1)).collect();
+        assert_eq!(indices(&back), [0usize; 0]);
+        square[25].1 = 40.0;
+        assert_eq!(indices(&square), [25]);
+        // of a single step nobody can tell but who knows that the column is held
+        let once: Vec<_> = (0..41).map(|i| (i as f64, if i < 40 { 1.0 } else { -1.0 })).collect();
+        assert_eq!(indices(&once), [40]);
+        assert_eq!(spikes(&once, 8.0, 0.0, true), []);
     }
 
     #[test]
@@ -296,7 +430,7 @@ mod tests {
     fn measurements_on_a_grid_have_no_spikes() {
         let grid = 1e-4;
         let mut series = sampled(400, |t| grid * (0.02 * (1.0 - (4.0 * (t - 0.9)).tanh()) / grid).round());
-        let found = |series: &[(f64, f64)]| spikes(series, 8.0, grid).len();
+        let found = |series: &[(f64, f64)]| spikes(series, 8.0, grid, false).len();
         assert_eq!(found(&series), 0);
         series[100].1 += 2e-3;
         assert_eq!(found(&series), 1);
