@@ -220,16 +220,16 @@ fn a_smoother_is_least_squares_of_all_samples_together() {
         for (i, believed) in guess.iter().enumerate() {
             relate(&[(i, 1.0)], *believed, 0.5 * believed.abs());
         }
-        for (row, cells) in rows.iter().enumerate().skip(1) {
+        for (row, cells) in rows.iter().enumerate() {
             for i in 0..2 {
-                let (from, to) = (2 * (row - 1), 2 * row);
-                // without noise the equations hold to far below what is compared
-                let deviation = (drive * guess[i].abs() * STEP.sqrt()).max(1e-8);
-                relate(&[(to + i, 1.0), (from, -flow[(i, 0)]), (from + 1, -flow[(i, 1)])], 0.0, deviation);
-                // a filter begins behind the first sample
+                let to = 2 * row;
                 if let Some(value) = cells[i] {
                     relate(&[(to + i, 1.0)], value, [0.02, 0.05][i]);
                 }
+                let Some(from) = to.checked_sub(2) else { continue };
+                // without noise the equations hold to far below what is compared
+                let deviation = (drive * guess[i].abs() * STEP.sqrt()).max(1e-8);
+                relate(&[(to + i, 1.0), (from, -flow[(i, 0)]), (from + 1, -flow[(i, 1)])], 0.0, deviation);
             }
         }
         let slopes = DMatrix::from_fn(relations.len(), 2 * ROWS, |i, j| relations[i].0[j]);
