@@ -205,7 +205,7 @@ fn unknowns_with_one_value() {
             if let (Some(1), Some(other)) = (count, another) {
                 findings.fault(
                     &format!("one value, and there is another ({class})"),
-                    &format!("{name}: {truth:?} and {other:?} have the same outputs"),
+                    format!("{name}: {truth:?} and {other:?} have the same outputs"),
                     &text,
                 );
             }

@@ -143,11 +143,7 @@ impl System {
             }
         }
         if let Some(within) = &statement.equation.within {
-            let tolerance = self.scalar(within)?;
-            if self.graph.constant_value(tolerance).is_some_and(|value| *value < RBig::ZERO) {
-                let message = "a tolerance is not negative";
-                return Err(Problem::new(Code::Statement, &within.span, message, "below zero"));
-            }
+            self.scalar(within)?;
         }
         if statement.carried.is_some() {
             let is_print = statement.equation.right.is_literal();

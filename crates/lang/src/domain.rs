@@ -162,9 +162,8 @@ fn numbers_in(expr: &Expr, numbers: &mut Vec<Expr>) -> bool {
         ExprKind::Number(_) => {}
         ExprKind::Name(_) | ExprKind::Indexed(_) => return true,
         ExprKind::Call(_, parts) => parts.iter().for_each(|one| part(false, one, numbers)),
-        ExprKind::Sum(parts) | ExprKind::Product(parts) => {
-            parts.iter().for_each(|(divides, one)| part(*divides, one, numbers));
-        }
+        ExprKind::Sum(parts) => parts.iter().for_each(|(_, one)| part(false, one, numbers)),
+        ExprKind::Product(parts) => parts.iter().for_each(|(divides, one)| part(*divides, one, numbers)),
         ExprKind::Power(base, _) => part(false, base, numbers),
         ExprKind::RealPower(base, exponent) => {
             part(false, base, numbers);

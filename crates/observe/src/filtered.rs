@@ -24,6 +24,9 @@ pub(super) struct Filtered<'t, 'a> {
     held: BTreeMap<(usize, bool), (f64, usize)>,
 }
 
+/// The state and the factor of its covariance after a measurement, and the innovation.
+pub(super) type Corrected = (DVector<f64>, DMatrix<f64>, Innovation);
+
 /// An innovation: expected minus measured, and the lower triangular factor of its covariance.
 pub(super) struct Innovation {
     pub residual: DVector<f64>,

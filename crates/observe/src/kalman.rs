@@ -1,6 +1,6 @@
 //! The extended Kalman filter, the field's usual choice.
 
-use super::filtered::{Filtered, Innovation, compared, deviations, factor, not_finite};
+use super::filtered::{Corrected, Filtered, Innovation, compared, deviations, factor, not_finite};
 use super::task::{Observer, Task};
 use super::track::Track;
 use super::{Learned, Lost, Order};
@@ -86,7 +86,7 @@ impl Kalman {
             so_far.believe(times[0], state.as_slice(), &deviations(&root), Vec::new());
             keep(&state, &root, None);
         }
-        for row in first..times.len() {
+        for (row, time) in times.iter().enumerate().skip(first) {
             if task.interrupted() {
                 break;
             }
@@ -100,9 +100,9 @@ impl Kalman {
                 }
             };
             innovation.iter().for_each(|own| so_far.compare_white(own));
-            so_far.hold(times[row], &mut state, &(&root * root.transpose()));
+            so_far.hold(*time, &mut state, &(&root * root.transpose()));
             let residual = innovation.map(|own| own.of_all(noise.len())).unwrap_or_default();
-            so_far.believe(times[row], state.as_slice(), &deviations(&root), residual);
+            so_far.believe(*time, state.as_slice(), &deviations(&root), residual);
             keep(&state, &root, predicted);
         }
         let mut track = so_far.end();
@@ -158,7 +158,7 @@ fn correct(
     root: &DMatrix<f64>,
     deviations: &DVector<f64>,
     row: usize,
-) -> Result<Option<(DVector<f64>, DMatrix<f64>, Innovation)>, Lost> {
+) -> Result<Option<Corrected>, Lost> {
     let measured = compared(task, row);
     if measured.is_empty() {
         return Ok(None);

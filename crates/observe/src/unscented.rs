@@ -1,6 +1,6 @@
 //! The unscented Kalman filter: no derivative is taken, points about the estimate are followed instead.
 
-use super::filtered::{Filtered, Innovation, compared, deviations, factor, not_finite};
+use super::filtered::{Corrected, Filtered, Innovation, compared, deviations, factor, not_finite};
 use super::task::{Observer, Task};
 use super::track::Track;
 use super::{Learned, Lost, Order};
@@ -161,7 +161,7 @@ impl Unscented {
         root: &DMatrix<f64>,
         deviations: &DVector<f64>,
         row: usize,
-    ) -> Result<Option<(DVector<f64>, DMatrix<f64>, Innovation)>, Lost> {
+    ) -> Result<Option<Corrected>, Lost> {
         let measured = compared(task, row);
         if measured.is_empty() {
             return Ok(None);

@@ -294,6 +294,11 @@ fn of_a_rate(before: &str, rest: &str) -> Option<String> {
         .rfind(|c| !is_word(c))
         .map_or(0, |end| end + named[end..].chars().next().map_or(1, char::len_utf8));
     let (name, line) = (&named[begin..], named[..begin].rsplit(ends_a_line).next().unwrap_or_default());
+    let digits = name.len() - name.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+    if digits > 0 && digits < name.len() {
+        // `2x`
+        return Some(product(&name[..digits], &name[digits..]));
+    }
     if let Some(left) =
         line.trim_end().rsplit(|c: char| !is_word(c)).next().filter(|_| !line.trim().is_empty())
     {
