@@ -41,7 +41,7 @@ fn a_browser_is_started_with_a_code_that_is_good_once() {
     // whoever comes second, without what the first page keeps, gets nothing
     browser.value("localStorage.clear()");
     browser.send("Page.navigate", serde_json::json!({ "url": opened }));
-    browser.until("document.body && document.getElementById('notice').textContent.includes('was not opened by the address')");
+    browser.until("document.body && document.getElementById('notice')?.textContent.includes('was not opened by the address')");
     // the printed address is for the one who sees this terminal, and stays
     browser.go(printed.trim());
     let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();

@@ -419,7 +419,7 @@ fn nothing_is_lost_between_files_and_reloads() {
     // what was not saved can be had back
     browser.write("system \"precious\"\nstate y\n");
     browser.click("#new");
-    browser.until("document.getElementById('notice').textContent.includes('was not saved')");
+    browser.until("document.getElementById('notice')?.textContent.includes('was not saved')");
     browser.click("#notice button");
     browser.until("document.querySelector('.cm-content').innerText.includes('precious')");
     browser.write("system \"mine\"\nstate y\n");
@@ -428,7 +428,7 @@ fn nothing_is_lost_between_files_and_reloads() {
     write(&folder, "other.proof", &other);
     browser.click("#save");
     browser
-        .until("document.getElementById('notice').textContent.includes('was changed since it was opened')");
+        .until("document.getElementById('notice')?.textContent.includes('was changed since it was opened')");
     browser.click("#notice button");
     browser.until("document.getElementById('state').textContent === 'saved: third.proof'");
     assert_eq!(
