@@ -210,7 +210,7 @@ class System:
         only: ids, parts of ids before a dot, or patterns with '*'. seed: of the random points. evidence: keep what the verdicts rest on, for `Claims.evidence` and `Claims.recheck`.
 
         >>> [(claim.id, claim.verdict) for claim in rod.prove()]
-        [('motion', 'proved'), ('seen', 'proved'), ('sign', 'refuted')]
+        [('motion', 'proved'), ('observable', 'proved'), ('sign', 'refuted')]
         """
         return _asked(Claims, lambda: self._native.prove(_several(only), seed, evidence))
 
