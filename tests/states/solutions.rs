@@ -136,6 +136,13 @@ fn functions_are_states_of_their_own() {
             "k",
             "no rational function",
         ),
+        // an angle outside of its functions stays there
+        ("state p angle p param k unknown drift f p' = k output 2*p", "k", "stands outside sin"),
+        (
+            "state p, x angle p param k unknown drift f p' = k x' = x*p output x, cos(p)",
+            "k",
+            "stands outside sin",
+        ),
         // the argument is known at the beginning alone: a and -a have the same outputs
         (
             "state x, y param a unknown initial x known drift f x' = a y' = exp(x) output a^2",

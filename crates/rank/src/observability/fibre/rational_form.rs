@@ -15,6 +15,7 @@
 //!
 //! An output that is an angle itself determines its sine and cosine; these are measured in its place.
 
+use super::model::Model;
 use super::{Solutions, SolutionsAnswer, SolutionsOf, SolutionsQuestion, solutions};
 use crate::observability::driven::told_constants;
 use crate::observability::elimination;
@@ -96,7 +97,12 @@ pub(super) fn count_in_rational_form(
         let of_functions = form.lifted.iter().map(|lifted| &lifted.argument);
         let nodes = of_functions.chain(form.lifted.iter().flat_map(|lifted| &lifted.values));
         let nodes = nodes.chain(form.asked.iter().filter(|node| form.place(**node).is_none()));
-        let expressions = nodes.map(|node| (String::new(), *node)).collect();
+        let nodes: Vec<NodeId> = nodes.copied().collect();
+        // what is not rational even so, an angle outside of its functions, would be rewritten for ever
+        if Model::new(&form.system, &Assignment::new(), &nodes).is_err() {
+            return Err(None);
+        }
+        let expressions = nodes.into_iter().map(|node| (String::new(), node)).collect();
         let inner = SolutionsQuestion {
             conditions: Assignment::new(),
             expressions,
