@@ -4,7 +4,7 @@
 
 use super::expression::{DEEPEST, ForeignExpr, ForeignKind, ForeignOrder};
 use super::model::{ForeignConstant, ForeignModel, ForeignRate};
-use super::print::{Written, same, without_case};
+use super::print::{by_one_function, by_sign, same};
 use super::reduced::{Flags, SHORT};
 use super::thin::ThinSets;
 use dashu::base::BitTest;
@@ -217,7 +217,7 @@ impl Writing<'_> {
         let sides = (left.value, right.value);
         let mut values = (then.value, otherwise.value);
         // by abs, min or max both stand once
-        if let Written::Once(value) = without_case(of, &sides, *order, &values) {
+        if let Some(value) = by_one_function(of, &sides, *order, &values) {
             let size = value.size();
             return Ok(Part { value, size, is_total, has_sign });
         }
@@ -240,7 +240,7 @@ impl Writing<'_> {
                 self.above.push((name, named));
             }
         }
-        let (Written::Once(value) | Written::BySign(value)) = without_case(of, &sides, *order, &values);
+        let value = by_sign(of, &sides, *order, &values);
         let size = value.size();
         self.budget.nodes(size).map_err(|spent| super::too_much(&of.span, spent))?;
         Ok(Part { value, size, is_total, has_sign: true })
@@ -273,7 +273,7 @@ impl Writing<'_> {
                 Ok(Some(case(ForeignOrder::Greater, &one, below)))
             }
             ForeignKind::Case { sides, order, values } => {
-                if let Written::Once(_) = without_case(of, sides, *order, values) {
+                if by_one_function(of, sides, *order, values).is_some() {
                     return Ok(None);
                 }
                 if !self.thin.may_be_equal(&sides.0, &sides.1) {

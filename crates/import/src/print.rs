@@ -210,31 +210,31 @@ fn opposite(one: &ForeignExpr, other: &ForeignExpr) -> bool {
     negated(one, other) || negated(other, one)
 }
 
-/// A case without a case.
-pub(super) enum Written {
-    /// By `abs`, `min` or `max`: each value stands in it once.
-    Once(ForeignExpr),
-    /// By `sign`: both values stand in it twice. It is right where both exist everywhere and the sides are equal on a thin set alone, which who
-    /// asks for it has to see to: off that set it is the same.
-    BySign(ForeignExpr),
+/// The sides of a comparison, the one first that is greater where it holds.
+fn high_and_low(sides: &(ForeignExpr, ForeignExpr), order: ForeignOrder) -> (&ForeignExpr, &ForeignExpr) {
+    match order {
+        ForeignOrder::Greater | ForeignOrder::AtLeast => (&sides.0, &sides.1),
+        ForeignOrder::Less | ForeignOrder::AtMost => (&sides.1, &sides.0),
+    }
 }
 
-/// A case by `abs`, `min`, `max`, or by `sign`; `whole` is where it stands.
-pub(super) fn without_case(
+fn is_zero(one: &ForeignExpr) -> bool {
+    one.as_number() == Some(&RBig::ZERO)
+}
+
+/// A case by `abs`, `min` or `max`, in which each value stands once; none where it is not one of these. `whole` is where it stands. Nothing is
+/// copied where there is none: it is asked of each case in nested ones.
+pub(super) fn by_one_function(
     whole: &ForeignExpr,
     sides: &(ForeignExpr, ForeignExpr),
     order: ForeignOrder,
     values: &(ForeignExpr, ForeignExpr),
-) -> Written {
+) -> Option<ForeignExpr> {
     let span = &whole.span;
     let (then, otherwise) = values;
-    // where the first of these is the greater one
-    let (high, low) = match order {
-        ForeignOrder::Greater | ForeignOrder::AtLeast => (&sides.0, &sides.1),
-        ForeignOrder::Less | ForeignOrder::AtMost => (&sides.1, &sides.0),
-    };
+    let (high, low) = high_and_low(sides, order);
     let of_two = |name: &'static str| {
-        Written::Once(ForeignExpr::new(ForeignKind::Call(name, vec![then.clone(), otherwise.clone()]), span))
+        Some(ForeignExpr::new(ForeignKind::Call(name, vec![then.clone(), otherwise.clone()]), span))
     };
     if same(then, high) && same(otherwise, low) {
         return of_two("max");
@@ -242,25 +242,38 @@ pub(super) fn without_case(
     if same(then, low) && same(otherwise, high) {
         return of_two("min");
     }
-    let zero = |one: &ForeignExpr| one.as_number() == Some(&RBig::ZERO);
     let absolute = |of: &ForeignExpr| of.clone().under("abs");
     if opposite(then, otherwise) {
-        if zero(low) && same(then, high) || zero(high) && same(otherwise, low) {
-            return Written::Once(absolute(if zero(low) { then } else { low }));
+        if is_zero(low) && same(then, high) || is_zero(high) && same(otherwise, low) {
+            return Some(absolute(if is_zero(low) { then } else { low }));
         }
         // where x is less than zero x, and else -x
-        if zero(high) && same(then, low) || zero(low) && same(otherwise, high) {
-            return Written::Once(absolute(if zero(high) { low } else { high }).negative());
+        if is_zero(high) && same(then, low) || is_zero(low) && same(otherwise, high) {
+            return Some(absolute(if is_zero(high) { low } else { high }).negative());
         }
     }
+    None
+}
+
+/// A case by `sign`: both values stand in it twice. It is right where both exist everywhere and the sides are equal on a thin set alone, which
+/// who asks for it has to see to: off that set it is the same. `whole` is where it stands.
+pub(super) fn by_sign(
+    whole: &ForeignExpr,
+    sides: &(ForeignExpr, ForeignExpr),
+    order: ForeignOrder,
+    values: &(ForeignExpr, ForeignExpr),
+) -> ForeignExpr {
+    let span = &whole.span;
+    let (then, otherwise) = values;
+    let (high, low) = high_and_low(sides, order);
     // then where high > low: (then + otherwise)/2 + sign(high - low)*(then - otherwise)/2
     let two = || ForeignExpr::integer(2, span);
-    let distance = if zero(low) { high.clone() } else { high.clone().minus(low.clone()) };
+    let distance = if is_zero(low) { high.clone() } else { high.clone().minus(low.clone()) };
     let sign = distance.under("sign");
-    let (middle, half) = match (zero(then), zero(otherwise)) {
+    let (middle, half) = match (is_zero(then), is_zero(otherwise)) {
         (true, _) => (otherwise.clone(), otherwise.clone().negative()),
         (_, true) => (then.clone(), then.clone()),
         _ => (then.clone().plus(otherwise.clone()), then.clone().minus(otherwise.clone())),
     };
-    Written::BySign(middle.over(two()).plus(sign.times(half).over(two())))
+    middle.over(two()).plus(sign.times(half).over(two()))
 }
