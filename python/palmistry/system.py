@@ -319,7 +319,7 @@ class System:
         return found
 
     def singular_set(self, seed: int = 1) -> SingularSet:
-        """The sets on which the rank drops, each by its equations, with a proof that off them it does not: `palmistry rank --where-it-drops`.
+        """The sets on which the rank drops, each by its equations, with a proof that off them it does not: `palmistry rank --singular-set`.
 
         >>> beacon = palmistry.System.parse('system "s" state x, y drift f others\\' = 0 output x^2 + y^2, x*y')
         >>> print(beacon.singular_set().text.splitlines()[2])

@@ -41,7 +41,7 @@ COMMANDS = {
     "check": (["check"], {}),
     "rank": (["System.rank", "System.global_", "System.accessible", "System.singular_set", "System.reparametrise", "sweep"], {
         "--samples": "samples", "--at": "at", "--where": "where", "--order": "order", "--verdict": "verdict", "--digits": "digits", "--table": "table", "--coordinates": "coordinates",
-        "--global": "System.global_", "--functions": "functions", "--work": "work", "--accessible": "System.accessible", "--where-it-drops": "System.singular_set", "--out": "SingularSet.page",
+        "--global": "System.global_", "--functions": "functions", "--work": "work", "--accessible": "System.accessible", "--singular-set": "System.singular_set", "--out": "SingularSet.page",
         "--reparametrise": "System.reparametrise", "--details": "*all of it is in `.json`*", "--verdicts": "run", "--verdict-states": "run",
         "--shard": "shards", "--part": "folder", "--merge": "sweep", "--missing": "cluster.missing",
     }),

@@ -66,7 +66,7 @@ class TheProgram(unittest.TestCase):
             system = palmistry.System.read(file)
             if "siwr" not in name:
                 self.assertEqual(timeless(system.global_().json), timeless(program("rank", file, "--global")), name)
-                self.assertEqual(timeless(system.singular_set().json), timeless(program("rank", file, "--where-it-drops")), name)
+                self.assertEqual(timeless(system.singular_set().json), timeless(program("rank", file, "--singular-set")), name)
             self.assertEqual(timeless(system.accessible(50).json), timeless(program("rank", file, "--accessible", "--samples", "50")), name)
 
     def test_a_page_of_the_singular_set(self):

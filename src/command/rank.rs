@@ -44,7 +44,7 @@ use std::sync::{Arc, Mutex, PoisonError};
   palmistry rank mysystem.proof --samples 100000
   palmistry rank mysystem.proof --at omega0=0              on the set where omega0 is zero
   palmistry rank mysystem.proof --where 'sin(phi1) = 0'    on the set of a condition
-  palmistry rank mysystem.proof --where-it-drops           the exact set, with a proof that it drops nowhere else
+  palmistry rank mysystem.proof --singular-set             the states at which the rank drops, with a proof that it drops nowhere else
   palmistry rank mysystem.proof --global                   how many values of each unknown give the same outputs
   palmistry rank mysystem.proof --global --at omega0=0     and the rank where omega0 is zero
   palmistry rank mysystem.proof --functions                generators of all functions of the unknowns that have one value
@@ -55,7 +55,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(crate) struct Rank {
     /// The proof file.
     pub(super) file: PathBuf,
-    /// How many states are drawn from the sample box, to see where the rank drops; with 0 only the generic rank is decided, which writes
+    /// How many states are drawn from the sample box, to find rank-deficient ones; with 0 only the generic rank is decided, which writes
     /// down no Lie derivatives and is quick [default: 1000, where the Lie derivatives are short enough to be written down in a moment, else 0].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=1_000_000_000_000_000))]
     samples: Option<u64>,
@@ -97,12 +97,12 @@ pub(crate) struct Rank {
     /// proved, say that they move as in this file and that the outputs are the same.
     #[arg(long, value_name = "FILE")]
     pub(super) reparametrise: Option<PathBuf>,
-    /// Instead of sampled states: the sets on which the rank drops, each by its equations, and a proof that elsewhere it
-    /// equals the generic rank. The parameters may have any values.
-    #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "shard", "merge", "missing"])]
-    where_it_drops: bool,
+    /// Instead of sampled states: the singular set, as sets of rank-deficient states, each by its equations, and a proof that at all
+    /// other states the rank equals the generic one. The parameters may have any values.
+    #[arg(long, alias = "where-it-drops", conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "shard", "merge", "missing"])]
+    singular_set: bool,
     /// Write a page with these sets and their proof (index.html), and drops.json, into this folder.
-    #[arg(long, value_name = "DIR", requires = "where_it_drops")]
+    #[arg(long, value_name = "DIR", requires = "singular_set")]
     pub(super) out: Option<PathBuf>,
     /// How many values of each unknown give the same outputs: one (it is globally identifiable or observable), finitely many over the
     /// complex numbers, or infinitely many. Generically, by Groebner bases at random points modulo random primes; each number says whether it
@@ -119,7 +119,7 @@ pub(crate) struct Rank {
     work: u64,
     /// Write a row for each sampled state to a file, CSV or Parquet by its extension: index, rank, certified, smallest singular value,
     /// condition. With '--shard' those of its states.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["accessible", "where_it_drops", "merge", "missing"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["accessible", "singular_set", "merge", "missing"])]
     pub(super) table: Option<PathBuf>,
     /// Add the coordinates of each state to that table, angles in radians.
     #[arg(long, requires = "table")]
@@ -264,7 +264,7 @@ impl Rank {
             let printed = Printed { object: global_json(&answer), text: global_text(&answer) };
             return Ok(Answered { files: Files::default(), printed, status: status_of(&answer) }.print(form)?);
         }
-        let first = if self.where_it_drops {
+        let first = if self.singular_set {
             Step::Answered(self.singular_set(system, known)?)
         } else {
             self.ranks(system, known)?
@@ -291,7 +291,7 @@ impl Rank {
     /// Whether something else is asked for beside numbers of solutions.
     fn asks_for_ranks(&self) -> bool {
         let files = [&self.verdicts, &self.reparametrise, &self.table, &self.shards.merge];
-        self.where_it_drops
+        self.singular_set
             || self.accessible
             || self.samples.is_some()
             || self.order.is_some()

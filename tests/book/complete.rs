@@ -76,7 +76,7 @@ fn every_field_of_the_json_is_named() {
         &["prove", file, "--verdicts", &verdicts],
         &["recheck", &verdicts],
         &["rank", file, "--samples", "20", "--digits", "5"],
-        &["rank", file, "--where-it-drops"],
+        &["rank", file, "--singular-set"],
         &["eval", file, "x", "--at", "x=1", "--latex"],
         &["certify", file, "--boxes", "20"],
         &["trade", file, "--samples", "20"],

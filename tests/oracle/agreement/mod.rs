@@ -96,7 +96,7 @@ fn one_case(number: u64, findings: &mut Findings) {
         match drops(&model.text) {
             Ok(said) => judge_drops(&case, &said, &mut dice, findings),
             Err(why) if why.starts_with("panicked") => {
-                findings.fault("--where-it-drops panics", why, &case.text)
+                findings.fault("--singular-set panics", why, &case.text)
             }
             Err(why) => findings.undecided(class, &why),
         }

@@ -52,7 +52,7 @@ fn answers_are_those_of_the_commands() {
         }
     }
     let drops = lab.last(&json!({ "ask": "drops", "text": TEXT }));
-    let expected = json(&palmistry(&["rank", own.to_str().unwrap(), "--where-it-drops", "--json"]));
+    let expected = json(&palmistry(&["rank", own.to_str().unwrap(), "--singular-set", "--json"]));
     assert_eq!((&drops["drops"]["sets"], &drops["drops"]["exact"]), (&expected["sets"], &expected["exact"]));
     let rational = "system \"r\"\nstate x\nparam k unknown\ndrift f x' = -k^2*x\noutput x\n";
     let values = lab.last(&json!({ "ask": "values", "functions": true, "text": rational }));

@@ -207,7 +207,7 @@ fn what_is_known_before_the_end_is_kept() {
     for key in ["generic", "unknowns", "unobservable_dimension"] {
         assert_eq!(found["branches"][0][key], whole[key]);
     }
-    let drops = ["rank", "proofs/moll2002/circular_palms_rank.proof", "--where-it-drops"];
+    let drops = ["rank", "proofs/moll2002/circular_palms_rank.proof", "--singular-set"];
     let found = kept(&drops, &|found| found["rank"].is_number());
     assert_eq!((&found["exact"], &found["rank"]), (&false.into(), &10.into()));
     let moved = ["rank", "proofs/moll2002/general.proof", "--accessible", "--samples", "100000000"];

@@ -36,10 +36,10 @@ fn no_kind_of_rank_tells_times() {
         &["rank", small, "--samples", "20", "--details"] as &[&str],
         &["rank", moved, "--global"],
         &["rank", moved, "--functions"],
-        &["rank", small, "--where-it-drops"],
+        &["rank", small, "--singular-set"],
         &["rank", moved, "--accessible", "--samples", "20"],
         &["rank", moved, "--global", "--accessible", "--samples", "20"],
-        &["rank", small, "--global", "--where-it-drops"],
+        &["rank", small, "--global", "--singular-set"],
     ] {
         let run = [run, &["--no-times"]].concat();
         let as_json = [&run[..], &["--json"]].concat();
