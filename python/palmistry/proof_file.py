@@ -14,7 +14,7 @@ LETTERS = ("alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu n
 GREEK = {chr(base + at + (at > 16)): x for at, name in enumerate(LETTERS) for base, x in ((0x3b1, name), (0x391, name.capitalize()))}
 GREEK |= zip("\u03c2\u03d0\u03d1\u03d5\u03d6\u03f0\u03f1\u03f5\u00b5\u2126\u2206", "sigma beta theta phi pi kappa rho epsilon mu Omega Delta".split())
 ENTRY = re.compile(r"^[ \t]*(?=(?:system|use|state|param|angle|assume|latex|known|unknown|initial|experiments|let|drift|input|field"
-                   r"|output|sample|claim|erratum|damaged|scan|convention|loose|definition|undecided|set|pole|map|line"
+                   r"|output|sample|claim|erratum|damaged|scan|convention|loose|definition|undecided|set|singularity|pole|map|line"
                    r"|reduction)\b)", re.M)
 LARGEST, MOST_CLAIMS, MOST_NAMES = 16 << 20, 100_000, 2000  # bytes of a proof file; its entries; symbols of one kind
 READ, BYTES = 1000, 8  # what a file takes as work, and what as many bytes take as one node

@@ -39,7 +39,7 @@ sample
   omega in [1, 2]
 reduction of cart: v = 0 "the cart rests"
 set "at rest": omega = 0
-pole "hanging": sin(phi) = 0
+singularity "hanging": sin(phi) = 0
 map "plane": phi in [-1, 1], omega in [0, 2] at {g = 9} order 1 "nothing happens"
 line "to rest": omega to 0
 line "away": omega to infinity from {phi = 1/2}

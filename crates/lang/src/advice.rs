@@ -196,8 +196,8 @@ const ADVICE: &[(&str, &str, &str, &str)] = &[
     ("statement", "observable( unobservable( identifiable( unidentifiable(", ")", "name the unknowns, as in observable(x, y)"),
     ("statement", "observable unobservable identifiable unidentifiable", "", "the unknowns stand in brackets, as in {name}(x, y)"),
     // pictures, sets and imports
-    ("set pole", "", "{", "conditions stand without brackets, as in set \"rest\": x = 0, y = 0"),
-    ("set pole", "", ";", "conditions stand with ',' between them, as in set \"rest\": x = 0, y = 0"),
+    ("set singularity pole", "", "{", "conditions stand without brackets, as in set \"rest\": x = 0, y = 0"),
+    ("set singularity pole", "", ";", "conditions stand with ',' between them, as in set \"rest\": x = 0, y = 0"),
     ("map", "", "where with", "values of other symbols stand in braces, as in map \"title\": x in [0, 1], y in [0, 2] at {z = 3}"),
     ("experiments", "", ":", "leave ':' out, as in experiments 2"),
 ];
@@ -251,7 +251,7 @@ const FORMS: &[(&str, &str)] = &[
     ("definition", "the words stand in quotation marks, as in definition 1: \"text\""),
     ("undecided", "the words stand in quotation marks, as in undecided 1: \"reason\""),
     ("set", "as in set \"rest\": x = 0, y = 0"),
-    ("pole", "as in pole \"a pole\": x = 0"),
+    ("singularity pole", "as in singularity \"at the origin\": x = 0"),
     ("map", "as in map \"title\": x in [0, 1], y in [0, 2] at {z = 3} order 2 of x"),
     ("line", "as in line \"title\": x to 2 from {z = 3} of x"),
     ("reduction", "as in reduction of p: x = 0"),
@@ -295,7 +295,7 @@ fn part(entry: &str, head: &str) -> String {
             true if has_word("where") => "statement-conditions",
             true => "statement",
         },
-        "output" | "assume" | "set" | "pole" | "reduction" => "value",
+        "output" | "assume" | "set" | "singularity" | "pole" | "reduction" => "value",
         _ => return entry.to_owned(),
     };
     format!("{entry}-{kind}")

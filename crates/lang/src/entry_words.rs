@@ -8,13 +8,13 @@ use winnow::error::ParserError;
 
 /// What is expected where an entry begins.
 pub(super) const ENTRY: &str = "one of: system, use, state, param, angle, assume, latex, let, drift, input, field, output, sample, claim, erratum, \
-                     damaged, scan, convention, loose, definition, undecided, set, pole, map, line, reduction, known, unknown, initial, experiments";
+                     damaged, scan, convention, loose, definition, undecided, set, singularity, map, line, reduction, known, unknown, initial, experiments";
 
 /// What is expected behind an entry in its line.
 pub(super) const NEXT_ENTRY: &str = "an operator, or the next entry on a line of its own";
 
 /// The words that begin an entry.
-pub(super) const ENTRIES: [&str; 30] = [
+pub(super) const ENTRIES: [&str; 31] = [
     "system",
     "assume",
     "latex",
@@ -37,6 +37,7 @@ pub(super) const ENTRIES: [&str; 30] = [
     "definition",
     "undecided",
     "set",
+    "singularity",
     "pole",
     "map",
     "line",
@@ -71,7 +72,7 @@ const OTHER_ENTRIES: [(&str, &str); 26] = [
     ("degrees deg radians", "angles are in radians, as in angle x"),
     ("controllable observability", "a claim has a name and a colon, as in claim 1: rank = 2"),
     ("set", "as in set \"rest\": x = 0, y = 0"),
-    ("pole", "as in pole \"a pole\": x = 0"),
+    ("singularity pole", "as in singularity \"at the origin\": x = 0"),
     ("map", "as in map \"title\": x in [0, 1], y in [0, 2]; a step of discrete time is written in a drift, as in x+ = e"),
     ("line", "as in line \"title\": x to 2 from {y = 1}"),
     ("reduction", "as in use p = \"other.proof\", and then reduction of p: x = 0"),
@@ -124,7 +125,9 @@ pub(super) fn no_entry(text: &str, input: &Text<'_>, after_an_entry: bool) -> Ex
     let is_comment = COMMENTS.into_iter().any(|sign| rest.starts_with(sign));
     error.what = match word.as_str() {
         // words that are names too begin an entry only where a title follows
-        "set" | "pole" | "map" | "line" => format!("a title in quotation marks behind '{word}'"),
+        "set" | "singularity" | "pole" | "map" | "line" => {
+            format!("a title in quotation marks behind '{word}'")
+        }
         _ => ENTRY.to_owned(),
     };
     let go_on = || "or an operator, if the expression above goes on here".to_owned();

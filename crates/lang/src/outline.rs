@@ -181,7 +181,7 @@ impl Outline {
             }
             Item::View(view) => match &**view {
                 View::Set { title, is_pole, span, .. } => {
-                    add(DeclarationKind::View(if *is_pole { "pole" } else { "set" }), title, span);
+                    add(DeclarationKind::View(if *is_pole { "singularity" } else { "set" }), title, span);
                 }
                 View::Map { title, span, .. } => add(DeclarationKind::View("map"), title, span),
                 View::Line { title, span, .. } => add(DeclarationKind::View("line"), title, span),

@@ -177,7 +177,7 @@ pub(super) fn first_entry_word(text: &str) -> Option<&'static str> {
     let entry = ENTRIES.into_iter().find(|entry| *entry == word)?;
     // these are names too, unless a title follows, or what is reduced
     let begins = match entry {
-        "set" | "pole" | "map" | "line" => rest.trim_start().starts_with('"'),
+        "set" | "singularity" | "pole" | "map" | "line" => rest.trim_start().starts_with('"'),
         word if signals::WORDS.contains(&word) => signals::goes_on(word, rest),
         "reduction" => words(rest).next() == Some("of"),
         _ => !rest.trim_start().starts_with(['\'', '=']),
@@ -198,8 +198,8 @@ pub(super) fn names_of_text(text: &str) -> Option<(&'static str, Vec<String>)> {
     let names: Vec<String> = match entry {
         "state" | "param" | "angle" | "known" | "unknown" => words(rest).map(str::to_owned).collect(),
         "let" | "drift" | "input" | "field" | "use" => words(rest).take(1).map(str::to_owned).collect(),
-        "set" | "pole" | "map" | "line" | "reduction" | "output" | "sample" | "system" | "initial"
-        | "experiments" => Vec::new(),
+        "set" | "singularity" | "pole" | "map" | "line" | "reduction" | "output" | "sample" | "system"
+        | "initial" | "experiments" => Vec::new(),
         // ids may have dots and dashes
         _ => rest
             .split(|c: char| !(c.is_alphanumeric() || matches!(c, '.' | '_' | '-')))

@@ -29,7 +29,7 @@ pub struct NamedSet {
     pub conditions: Vec<Equation>,
     /// The same as it is written, one text a condition.
     pub written: Vec<String>,
-    /// Whether it is a `pole`: the fields or outputs are infinite there, so that there is no rank.
+    /// Whether it is a `singularity`: the fields or outputs are infinite there, so that there is no rank.
     pub is_pole: bool,
     /// Where its name stands.
     pub span: Span,
@@ -167,14 +167,15 @@ pub(crate) enum End {
     Infinity,
 }
 
-/// The words that begin these entries; they are names too.
-pub(super) const WORDS: [&str; 5] = ["set", "pole", "map", "line", "reduction"];
+/// The words that begin these entries; they are names too. `pole` is the former name of `singularity`.
+pub(super) const WORDS: [&str; 6] = ["set", "singularity", "pole", "map", "line", "reduction"];
 
 /// Whether one of these entries begins here, or one of what is known, and not a name that is one of their words: a quotation mark or `of` follows.
 pub(super) fn begins(input: &mut Text<'_>) -> bool {
     let title = |word: &'static str| (keyword(word), winnow::token::literal("\"")).void();
     let reduction = (keyword("reduction"), keyword("of"), name, sign(":")).void();
-    let mut any = alt((title("set"), title("pole"), title("map"), title("line"), reduction));
+    let mut any =
+        alt((title("set"), title("singularity"), title("pole"), title("map"), title("line"), reduction));
     peek(any.by_ref()).parse_next(input).is_ok() || signals::begins(input)
 }
 
@@ -202,7 +203,8 @@ fn coordinate(input: &mut Text<'_>) -> Read<Name> {
 }
 
 fn set(input: &mut Text<'_>) -> Read<View> {
-    let is_pole = alt((keyword("set").value(false), keyword("pole").value(true))).parse_next(input)?;
+    let singularity = alt((keyword("singularity"), keyword("pole")));
+    let is_pole = alt((keyword("set").value(false), singularity.value(true))).parse_next(input)?;
     let (title, span) = title(input)?;
     Ok(View::Set { title, conditions: conditions(input)?, is_pole, span })
 }

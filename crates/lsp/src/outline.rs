@@ -34,7 +34,7 @@ fn symbol(source: &Source, declaration: &Declaration) -> Value {
         Is::Field(_) => METHOD,
         Is::Output => EVENT,
         Is::Claim(_) => BOOLEAN,
-        Is::View("set" | "pole") => ARRAY,
+        Is::View("set" | "singularity") => ARRAY,
         Is::View(_) | Is::Reduction => OBJECT,
     };
     let behind = in_one_line(&source.plain, &(span.end..entry.end.max(span.end)));

@@ -66,7 +66,7 @@ fn words_that_may_be_names_are_told_by_what_follows() {
                 claim 5 expect refuted: a = 1\nclaim 6 expect proved: a = a\nerratum 7: printed \"a\" as a = 1 corrected a = a \"b\" conclusion \"none\"\n\
                 convention 8 follows 7: printed a = 1 meant a = a\ndamaged 9: reads a = 1 repaired a = a\n\
                 claim 10: a at {a = 2} = 2.0 carrying 2 digits\nclaim 11: a^2 >= 0 on sample\n\
-                claim 12: rank = 2 except where a = 0, b = 0 or b = 1\nclaim 13: rank = 2 everywhere\nset \"x\": a = 0\npole \"y\": a = 1\n\
+                claim 12: rank = 2 except where a = 0, b = 0 or b = 1\nclaim 13: rank = 2 everywhere\nset \"x\": a = 0\nsingularity \"y\": a = 1\npole \"z\": a = 2\n\
                 map \"m\": a in [0, 1], b in [0, 1] order 2\nline \"l\": a to infinity from {b = 1}\nreduction of o: b = 0\n\
                 experiments 2\ninitial a known\n";
     let folder = folder();

@@ -144,7 +144,7 @@ pub const RESERVED: [&str; 33] = [
 ];
 
 /// Words with a meaning at some places; elsewhere they are names.
-pub const SPECIAL: [&str; 31] = [
+pub const SPECIAL: [&str; 32] = [
     "proved",
     "conclusion",
     "refuted",
@@ -163,6 +163,7 @@ pub const SPECIAL: [&str; 31] = [
     "digits",
     "others",
     "set",
+    "singularity",
     "pole",
     "map",
     "line",
