@@ -97,6 +97,8 @@ impl Observer for HighGain {
                 return Track { remarks: vec![format!("no canonical form: {why}")], ..Track::default() };
             }
         };
+        // at how many samples measurements were compared with nothing
+        let untested = Cell::new(0_usize);
         let record = |so_far: &mut Filtered<'_, '_>, state: &[f64], error: &Spread, row: usize| {
             // the outputs of the canonical form are states: they are measured directly
             let read = task.measurements(row);
@@ -108,8 +110,11 @@ impl Observer for HighGain {
                 let residual = DVector::from_column_slice(&residual);
                 // after the state was lost there is no covariance, and nothing to compare
                 let is_known = covariance.iter().all(|value| value.is_finite());
-                if let Some(root) = Cholesky::new(covariance).filter(|_| is_known) {
-                    so_far.compare(&Innovation { residual, root: root.unpack(), measured });
+                match Cholesky::new(covariance).filter(|_| is_known) {
+                    Some(root) => {
+                        so_far.compare(&Innovation { residual, root: root.unpack(), measured });
+                    }
+                    None => untested.set(untested.get() + 1),
                 }
             }
             so_far.believe(times[row], state, &of_variances(&error.covariance().diagonal()), residual);
@@ -146,6 +151,13 @@ impl Observer for HighGain {
         let covariance = error.covariance();
         let mut track = so_far.end();
         let lengths: Vec<String> = canonical.lengths.iter().map(ToString::to_string).collect();
+        if untested.get() > 0 {
+            track.remarks.push(format!(
+                "at {} of {} samples the innovation has no positive definite covariance and is not in the test",
+                untested.get(),
+                times.len()
+            ));
+        }
         track.remarks.push(format!(
             "canonical form: the outputs and their derivatives, {} coordinates",
             lengths.join(" and ")

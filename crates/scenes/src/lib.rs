@@ -12,6 +12,7 @@
 mod advice;
 mod channels;
 mod columns;
+mod counted;
 mod groundwork;
 #[doc(hidden)]
 pub mod joint;

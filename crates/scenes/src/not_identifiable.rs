@@ -23,16 +23,7 @@ pub(crate) fn not_identifiable(system: &System, wanted: &EstimateQuestion, signa
     if !names.iter().any(|name| CalibrationKind::of(name).is_some()) {
         return Vec::new();
     }
-    if !system.zero_outputs().is_empty() {
-        // signals tied by outputs are not driven at will: the Cramér-Rao bound of a window says what is not observable
-        return Vec::new();
-    }
-    let mut system = system.clone();
-    declare(&mut system, &names);
-    if with_calibrations(&mut system, &names, wanted, signals).is_none() {
-        return Vec::new();
-    }
-    hold_constants(&mut system, &names, wanted, signals);
+    let Some(mut system) = as_estimated(system, &names, wanted, signals) else { return Vec::new() };
     let mut at = HashMap::new();
     let late =
         estimated_calibrations(&system, &names).into_iter().filter_map(|own| Some((own.column, own.delay?)));
@@ -47,6 +38,24 @@ pub(crate) fn not_identifiable(system: &System, wanted: &EstimateQuestion, signa
     let unobserved = answer.unknowns.iter().filter(|(_, seen)| *seen == Observability::No);
     let unobserved: Vec<&str> = unobserved.map(|(symbol, _)| system.symbol_name(*symbol)).collect();
     names.into_iter().filter(|name| unobserved.contains(&name.as_str())).collect()
+}
+
+/// The system whose unknowns are what is estimated: with gains and biases where sensors and motors have them, known constants put in, and the outputs that are
+/// measured. None where signals are tied by outputs, which are not driven at will then, and where a column drives the model that is no input.
+pub(super) fn as_estimated(
+    system: &System,
+    names: &[String],
+    wanted: &EstimateQuestion,
+    signals: &Signals,
+) -> Option<System> {
+    if !system.zero_outputs().is_empty() {
+        return None;
+    }
+    let mut system = system.clone();
+    declare(&mut system, names);
+    with_calibrations(&mut system, names, wanted, signals)?;
+    hold_constants(&mut system, names, wanted, signals);
+    Some(system)
 }
 
 /// Gains and biases where sensors and motors have them: in outputs and in what drives the inputs. None where a column has another part.

@@ -300,3 +300,31 @@ fn inverted_derivatives_are_a_start() {
         assert!(with < 1e-9 && without > 1.0, "{guess}: {with:e} and without {without:e}");
     }
 }
+
+/// Absorption and elimination of a drug that is measured in the blood alone. By hand: `y'' + (ka + ke) y' + ka ke y = 0` is the same where both rates are exchanged, and
+/// `gut = (y' + ke y)/ka` is another then; no symmetry of single unknowns says so. Where the gut is measured too there is one value of each.
+#[test]
+fn values_that_are_no_mirror_images_are_counted() {
+    let folder = folder();
+    let model = "system \"A drug\" state gut, blood param ka, ke unknown drift f gut' = -ka*gut blood' = ka*gut - ke*blood \
+                 output blood sample gut in [1, 9] blood in [0, 1] ka in [1/10, 3] ke in [1/10, 3]";
+    write(&folder, "drug.proof", model);
+    let scene = "title = \"A drug\"\nmodel = \"drug.proof\"\nduration = 8\nsamples = 81\n[start]\ngut = 2\nblood = 0.1\nka = 1.3\nke = 0.4\n\
+                 [sensor]\nnoise = 0.001\n[observer]\nmethods = [\"trust-region\", \"kalman\"]\nestimate = [\"gut\", \"blood\", \"ka\", \"ke\"]\nguess_off = 0.02\nsteps = 50\n";
+    let remarks = |scene: &str| {
+        let (output, found) = observe(&write(&folder, "drug.toml", scene), &[]);
+        assert_eq!(output.status.code(), Some(0), "{found}");
+        let of = |k: usize| found["observers"][k]["remarks"].to_string();
+        (of(0), of(1))
+    };
+    let counted = "of gut (2), ka (2), ke (2); the estimate is one of them";
+    let (window, filter) = remarks(scene);
+    assert!(window.contains(counted) && filter.contains(counted), "{window} {filter}");
+    // with one rate known, or both amounts measured, nothing can be exchanged
+    let known = scene.replace("\"ka\", \"ke\"]", "\"ka\"]\nknown = { ke = 0.4 }");
+    let (window, _) = remarks(&known);
+    assert!(!window.contains("several values"), "{window}");
+    write(&folder, "drug.proof", model.replace("output blood", "output blood output gut"));
+    let (window, _) = remarks(scene);
+    assert!(!window.contains("several values"), "{window}");
+}

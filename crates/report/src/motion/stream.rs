@@ -47,6 +47,7 @@ pub fn stream_end_json(end: &StreamEnd, interrupted: bool) -> Value {
             "method": tally.method.name(),
             "updates": tally.updates,
             "fit": tally.fit,
+            "untested": tally.untested,
             "do_not_fit": tally.contradicted,
             "steps_spent": tally.spent,
             "together": together_json(tally.tested.together()),
@@ -123,6 +124,9 @@ pub fn stream_end_text(end: &StreamEnd) -> String {
     );
     for tally in end.observers.iter().filter(|tally| tally.updates > 0) {
         let _ = write!(text, "; {}: {} of {} updates fit", tally.method.name(), tally.fit, tally.updates);
+        if tally.untested > 0 {
+            let _ = write!(text, ", {} with too little measured to test the residuals", tally.untested);
+        }
         if tally.spent > 0 {
             let _ = write!(text, ", {} ended with all steps spent", tally.spent);
         }

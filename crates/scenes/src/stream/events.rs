@@ -66,7 +66,7 @@ pub struct StreamEnd {
     pub cut_off: Option<String>,
     /// A faulty row, where the scene says to stop.
     pub fault: Option<String>,
-    /// For each observer: its updates, those that fit, and whether one is contradicted.
+    /// For each observer: its updates, those that fit or were not tested, and whether one is contradicted.
     pub observers: Vec<StreamTally>,
 }
 
@@ -77,8 +77,10 @@ pub struct StreamTally {
     pub method: Method,
     /// Its updates.
     pub updates: usize,
-    /// Those that converged and fit.
+    /// Those that converged, were tested, and fit.
     pub fit: usize,
+    /// Those that converged, and of which too little was measured to test the residuals.
+    pub untested: usize,
     /// Those that converged and do not fit.
     pub contradicted: usize,
     /// Those whose search did not converge: all of its steps were spent.
@@ -105,7 +107,7 @@ impl StreamTally {
 }
 
 impl StreamEnd {
-    /// Whether no update is contradicted, each search converged, and each method by windows has an update that fits; where there is none by windows, whether each filter passes its test. A stream that was
+    /// Whether no update is contradicted, each search converged, and each method by windows has an update that fits, or that too little was measured to test; where there is none by windows, whether each filter passes its test. A stream that was
     /// cut off before it had any answer needs none.
     pub fn is_sound(&self) -> bool {
         let is_whole = self.cut_off.is_none();
@@ -113,7 +115,7 @@ impl StreamEnd {
         let has_windows = self.observers.iter().any(by_windows);
         self.observers.iter().all(|tally| match by_windows(tally) {
             true => {
-                let fits = tally.fit > 0 || (!is_whole && tally.updates == 0);
+                let fits = tally.fit + tally.untested > 0 || (!is_whole && tally.updates == 0);
                 fits && tally.spent == 0 && !tally.is_contradicted()
             }
             false => has_windows || tally.passes() || (!is_whole && tally.believed[0] == 0),

@@ -5,7 +5,7 @@ use super::events::{StreamAnswer, StreamTally, WindowReport};
 use crate::channels::known_sensors;
 use crate::run::Experiment;
 use crate::scene::{Method, SceneError};
-use palmistry_observe::{FALSE_ALARMS, Learned, Signals, Task, Tested, UpdateEnd};
+use palmistry_observe::{FALSE_ALARMS, Learned, Signals, Task, Tested, Update, UpdateEnd};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -29,6 +29,7 @@ impl SoFar {
             method: *method,
             updates: 0,
             fit: 0,
+            untested: 0,
             contradicted: 0,
             spent: 0,
             tested: Tested::default(),
@@ -189,10 +190,12 @@ impl<'a> Observing<'a> {
             task.learned = learned.take();
             let track = self.experiment.observer(tally.method).observe(&task);
             tally.updates += track.updates.len();
-            tally.fit += track.updates.iter().filter(|update| update.is_borne_out()).count();
+            let count = |of: fn(&Update) -> bool| track.updates.iter().filter(|update| of(update)).count();
+            tally.fit += count(|update| update.is_borne_out() && !update.is_untested());
+            tally.untested += count(Update::is_untested);
             track.updates.iter().for_each(|update| update.count_in(&mut tally.tested));
-            tally.contradicted += track.updates.iter().filter(|update| update.is_contradicted()).count();
-            tally.spent += track.updates.iter().filter(|update| update.end == UpdateEnd::StepsSpent).count();
+            tally.contradicted += count(Update::is_contradicted);
+            tally.spent += count(|update| update.end == UpdateEnd::StepsSpent);
             if let Some(own) = track.innovations {
                 tally.innovations = Some(tally.innovations.map_or(own, |before| before.with(own)));
             }
