@@ -23,7 +23,7 @@ use std::time::Instant;
 ///
 /// Branch and bound with interval arithmetic. The sample box is halved again and again; a box is finished when some
 /// minor of the rows is proved, with outward rounding, to be different from zero at every state in it. The other boxes
-/// are those in which a minor is proved to vanish somewhere, those that contain a pole, and those that are undecided. The
+/// are those in which a minor is proved to vanish somewhere, those that contain a singularity, and those that are undecided. The
 /// proved fraction is a lower bound, and grows with the budget. Angles and parameters without a range keep their value;
 /// what the file says to avoid is part of the box, and the fraction is also given without it.
 #[derive(Args)]
@@ -35,7 +35,7 @@ use std::time::Instant;
 pub(crate) struct Certify {
     /// The proof file.
     pub(super) file: PathBuf,
-    /// Other ranges than those of the file, for states and parameters; the same number twice holds one fixed.
+    /// Other ranges than those of the file, for states and parameters; the same number twice fixes one.
     #[arg(
         long = "box",
         value_name = "NAME=LOW..HIGH,...",

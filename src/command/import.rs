@@ -49,7 +49,7 @@ pub(crate) struct Import {
     #[arg(long, value_enum, value_name = "FORMAT")]
     from: Option<From>,
     /// Write the proof file here; without it, it is printed. For a PEtab problem NAME.proof, the scene NAME.toml and the measurements NAME.csv
-    /// are written side by side.
+    /// are written beside each other.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Which of several models, by its name or its number.

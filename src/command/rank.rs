@@ -45,9 +45,9 @@ use std::sync::{Arc, Mutex, PoisonError};
   palmistry rank mysystem.proof --at omega0=0              on the set where omega0 is zero
   palmistry rank mysystem.proof --where 'sin(phi1) = 0'    on the set of a condition
   palmistry rank mysystem.proof --singular-set             the states at which the rank drops, with a proof that it drops nowhere else
-  palmistry rank mysystem.proof --global                   how many values of each unknown give the same outputs
+  palmistry rank mysystem.proof --global                   each unknown globally, locally or not identifiable, with the number of solutions
   palmistry rank mysystem.proof --global --at omega0=0     and the rank where omega0 is zero
-  palmistry rank mysystem.proof --functions                generators of all functions of the unknowns that have one value
+  palmistry rank mysystem.proof --functions                generators of all identifiable functions
   palmistry rank mysystem.proof --digits 40                the worst state's singular values, all digits certain
   palmistry rank mysystem.proof --accessible               what the inputs can move, by brackets
   palmistry rank mysystem.proof --samples 1000000 --shard 3/64 --part parts    one of 64 shards, on any machine
@@ -104,8 +104,8 @@ pub(crate) struct Rank {
     /// Write a page with these sets and their proof (index.html), and drops.json, into this folder.
     #[arg(long, value_name = "DIR", requires = "singular_set")]
     pub(super) out: Option<PathBuf>,
-    /// How many values of each unknown give the same outputs: one (it is globally identifiable or observable), finitely many over the
-    /// complex numbers, or infinitely many. Generically, by Groebner bases at random points modulo random primes; each number says whether it
+    /// Decide whether each unknown is globally identifiable or observable (one value gives the same outputs), locally (finitely many values do,
+    /// which are counted over the complex numbers), or not at all. Generically, by Groebner bases at random points modulo random primes; each number says whether it
     /// is proved or computed. Where rates or outputs are not rational functions, one value is found and more are undecided. States are sampled only where another option asks for it; conditions
     /// ('--at', '--where') concern those states, and not these numbers.
     #[arg(long, conflicts_with_all = ["shard", "missing"])]

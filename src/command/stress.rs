@@ -29,7 +29,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Then every quantity is scaled from 1e-150 to 1e150, and ranks are decided again in other units, which should change
 /// no verdict: units of the dimensions that the file declares, or each state in a smaller unit where it declares none. Where numbers overflow or are divided by zero, the operation is named.
 ///
-/// The sets are those that a file names ('set', 'pole', and lines to infinity); where it names none, what it says to avoid,
+/// The sets are those that a file names ('set', 'singularity', and lines to infinity); where it names none, what it says to avoid,
 /// the divisors of its rows, and each quantity of its sample at zero. Without FILE, the systems with named sets of a
 /// paper that came with the program are taken.
 #[derive(Args, Clone)]

@@ -24,8 +24,8 @@ use std::time::Duration;
 /// A paper is a folder of proof files, with a paper.toml that gives its title, its numbered equations and the scenes to run; or
 /// one proof file. Without a path, a paper that came with the program is taken.
 ///
-/// Exit status 0 only when every claim has the verdict that its file expects, every named set has a rank or is the pole that its
-/// file says it is, and every reduction is proved.
+/// Exit status 0 only when every claim has the verdict that its file expects, every named set has a rank, every named
+/// singularity has none, and every reduction is proved.
 #[derive(Args, Clone)]
 #[command(after_help = "Examples:
   palmistry verify mypaper --out report")]
