@@ -2,7 +2,7 @@
 
 /// Parts of messages, and what to do.
 const MESSAGES: &[(&str, &str)] = &[
-    ("held fixed and solved for in a condition", "leave it out of '--at', or the condition out of '--where'"),
+    ("is fixed and solved for in a condition", "leave it out of '--at', or the condition out of '--where'"),
     (
         "no state was found in",
         "states are drawn from the ranges of the file, angles in radians (pi is 3.14159); other ranges stand behind 'sample' in it",
@@ -65,7 +65,7 @@ mod tests {
             ("in the condition 'x=0 and y=0', at column 5: expected", "with ',' between them"),
             ("in the condition 'x', at column 2: expected '='", "as in --where 'x = 0'"),
             ("in the condition '2x = 0', at column 2: expected", "with '*'"),
-            ("'x' is held fixed and solved for in a condition; choose one", "'--at'"),
+            ("'x' is fixed and solved for in a condition; choose one", "'--at'"),
             ("no state was found in 2000 draws: the conditions have no solution there", "radians"),
             ("a.json: it is no verdict file: expected value", "--verdicts OUT"),
             ("something else", ""),

@@ -143,11 +143,11 @@ fn claims_about_all_states() {
         assert!(outcome.ok, "{}: {:?}", outcome.id, outcome.verdict);
     }
     let beside = |id: &str| &outcomes.iter().find(|outcome| outcome.id == id).expect("it is there").beside;
-    assert_eq!(beside("least"), &["where k = 0 it is lower at all states: at most 2 where k = 0"]);
+    assert_eq!(beside("least"), &["where k = 0 the rank is deficient at all states: at most 2 where k = 0"]);
     assert_eq!(beside("sets").len(), 2);
     assert_eq!(
         beside("sets")[1],
-        "where y = 0, z = 0 it is not lower everywhere, or that is not decided; it is 0 where y = 0, z = 0, k = 0"
+        "where y = 0, z = 0 the rank is not deficient everywhere, or that is not decided; it is 0 where y = 0, z = 0, k = 0"
     );
     assert!(beside("given").is_empty());
 }

@@ -138,7 +138,7 @@ fn what_fails_fails_at_a_state() {
             Verdict::Refuted { witness, .. } => assert!(witness.refutation.is_some() && !is_false, "{text}"),
             // no state meets these conditions: x + y = 1 with both above
             Verdict::Undecided { why } => {
-                assert!(is_false && why.contains("exists nowhere"), "{text}: {why}")
+                assert!(is_false && why.contains("is defined nowhere"), "{text}: {why}")
             }
             other => panic!("{text}: {other:?}"),
         }
@@ -178,10 +178,10 @@ fn what_is_decided_completely() {
 #[test]
 fn what_is_not_shown_is_undecided() {
     let statements = [
-        ("x > 0 where x > 1, x < 0", "exists nowhere"),
+        ("x > 0 where x > 1, x < 0", "defined nowhere"),
         ("x > 0 where x^2 + 1 = 0", "never met"),
         ("x + y > 100 where x^4 + y^4 + exp(x) = 0", "never met"),
-        ("sqrt(-1 - x^2) >= 0", "exists nowhere"),
+        ("sqrt(-1 - x^2) >= 0", "defined nowhere"),
         ("sin(x*y)*cos(x + y) + exp(-x^2) <= 1 + 1/1000000 where x^3 + y^3 = x*y + 20", ""),
     ];
     for (text, reason) in statements {

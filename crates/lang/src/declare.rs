@@ -304,7 +304,7 @@ impl System {
                 (format!("'{name}' is a constant, and does not move"), "declare it as a state")
             }
             Some(UnknownKind::Signal) => {
-                (format!("'{name}' is a signal, and moves by itself"), "declare it as a state")
+                (format!("'{name}' is a signal, and has no rate"), "declare it as a state")
             }
             _ if !self.coordinates.own.contains(&symbol) => {
                 (format!("'{name}' moves as it does in the first experiment"), "leave it out")

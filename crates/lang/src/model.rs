@@ -435,7 +435,7 @@ impl System {
                     "'field {name}' is only differentiated along, and a rank needs a drift or an input"
                 );
                 Problem::new(Code::Field, &field.span, message, "neither drift nor input").help(format!(
-                    "write 'drift {name}' where the states move so by themselves, 'input {name}' where something drives them"
+                    "write 'drift {name}' for the unforced dynamics, 'input {name}' for a field that an input drives"
                 ))
             }
             None => {

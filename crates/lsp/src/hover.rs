@@ -61,8 +61,8 @@ fn facts(kind: DeclarationKind, name: &str, system: &System) -> Vec<String> {
         }
         DeclarationKind::Field(role) => facts.push(
             match role {
-                Role::Drift => "how the states move by themselves",
-                Role::Input => "how the states move where something drives them",
+                Role::Drift => "the unforced dynamics",
+                Role::Input => "the vector field of an input",
                 Role::Other => "a vector field that is only differentiated along",
             }
             .to_owned(),

@@ -226,7 +226,7 @@ fn names_are_told_and_found() {
         ((4, 46), "**use** `base`", place(&other, system.clone())),
         (
             (4, 49),
-            "**drift** `base.f`; how the states move by themselves; declared in `base.proof`, line 4",
+            "**drift** `base.f`; the unforced dynamics; declared in `base.proof`, line 4",
             place(&other, range(3, 6, 7)),
         ),
         // at the end of a name

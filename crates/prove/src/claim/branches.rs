@@ -247,10 +247,10 @@ pub(super) fn together(question: &Question, found: Vec<(Size, Branch, OnOneBranc
         return Verdict::undecided(if verdicts.is_empty() {
             // a derivative may exist where the formula of the rules has no value, as that of an absolute value squared at zero
             format!(
-                "its formula exists nowhere (derivatives are taken by the rules, term by term): it needs {needs}"
+                "its formula is defined nowhere (derivatives are taken by the rules, term by term): it needs {needs}"
             )
         } else {
-            format!("no state was found at which all of it exists: it needs {needs}")
+            format!("no state was found at which all of it is defined: it needs {needs}")
         });
     }
     Verdict::all(verdicts)

@@ -365,7 +365,7 @@ fn attempt(
         let terms = Terms { guards, ..Terms::default() };
         let on = OnBranch::new(system, &Branch::default(), &terms)?;
         if let Existence::Nowhere(guard) = existence(system, &on, rng) {
-            return Err(format!("its formula exists nowhere: it needs {guard}"));
+            return Err(format!("its formula is defined nowhere: it needs {guard}"));
         }
         return pole_statement(system, statement, left, right, rng);
     }

@@ -142,7 +142,7 @@ pub(super) fn decide(
             };
             let engine = match set.is_empty() {
                 true => "exact elimination".to_owned(),
-                false => format!("exact elimination; the rank is lower where {}", set.join(", ")),
+                false => format!("exact elimination; rank-deficient where {}", set.join(", ")),
             };
             let engine = match log2_error.is_finite() && claim.matrix.is_none() {
                 true => {
@@ -161,7 +161,7 @@ pub(super) fn decide(
                 true => format!(" (error probability below 2^{:.0})", log2_error.ceil()),
                 false => String::new(),
             };
-            let engine = format!("exact elimination; the rank is lower where {}{chance}", set.join(", "));
+            let engine = format!("exact elimination; rank-deficient where {}{chance}", set.join(", "));
             let why = "the state is irrational, which no verdict file can hold";
             let evidence = vec![Evidence::Unchecked(why.to_owned())];
             DecidedEverywhere { verdict: Verdict::Refuted { engine, witness }, evidence, beside: Vec::new() }
@@ -194,7 +194,7 @@ fn identity(system: &System, minor: &MinorIdentity, log2_error: f64, rng: &mut i
     let sides = [minor.minor, minor.product];
     let mentioned = sides.iter().copied().chain(minor.guards.iter().map(|guard| guard.node));
     let symbols = graph.symbols_of(mentioned);
-    let mut why = "no state was found at which all of it exists".to_owned();
+    let mut why = "no state was found at which all of it is defined".to_owned();
     for _ in 0..STATES {
         let mut state = State::default();
         for symbol in &symbols {

@@ -34,7 +34,7 @@ pub enum Kept {
 /// Why there is nothing for the checker.
 pub(super) const TOO_LONG: &str = "the Lie derivatives that show it are too long to be written down";
 /// The same.
-const NO_STATE: &str = "no state was written down at which all of it exists";
+const NO_STATE: &str = "no state was written down at which all of it is defined";
 
 impl OnBranch {
     fn at<'s>(

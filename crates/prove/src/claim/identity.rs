@@ -96,7 +96,7 @@ pub(crate) fn decide_identity(
             Existence::Nowhere(guard) => OnOneBranch::Empty(guard),
             found => {
                 let why = match states {
-                    0 => format!("{why}; no state was found at which both sides exist"),
+                    0 => format!("{why}; no state was found at which both sides are defined"),
                     _ => format!("{why}; the sides agree to at least {digits} digits at {states} states"),
                 };
                 OnOneBranch::Verdict(Verdict::undecided(why), found)

@@ -300,10 +300,10 @@ fn where_equal(
     }
     Some(Verdict::undecided(match &tries.doubt {
         Some(doubt) => format!(
-            "both sides are equal wherever they exist, so that it fails there, which the checker does not confirm: {doubt}"
+            "both sides are equal wherever they are defined, so that it fails there, which the checker does not confirm: {doubt}"
         ),
         None => {
-            "both sides are equal wherever they exist, and no state was found at which they do".to_owned()
+            "both sides are equal wherever they are defined, and no state was found at which they are".to_owned()
         }
     }))
 }

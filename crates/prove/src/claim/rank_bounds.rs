@@ -62,7 +62,7 @@ pub(super) fn by_bounds(
     let refuted = |left: String| {
         let Some(state) = witness.clone() else {
             return Verdict::undecided(format!(
-                "the rank is {left} at all states, and no state in exact numbers was found at which all of it exists"
+                "the rank is {left} at all states, and no state in exact numbers was found at which all of it is defined"
             ));
         };
         let witness = Witness { state, left, right: claimed.to_string(), entry: None, refutation: None };

@@ -106,7 +106,7 @@ pub(super) fn on_one_branch(exists: Existence, verdict: impl FnOnce() -> Verdict
     match exists {
         Existence::Nowhere(guard) => OnOneBranch::Empty(guard),
         Existence::NotShown(guard) => {
-            let why = format!("no state was found at which all of it exists; it needs {guard}");
+            let why = format!("no state was found at which all of it is defined; it needs {guard}");
             OnOneBranch::Verdict(Verdict::undecided(why), Existence::NotShown(guard))
         }
         Existence::Shown => OnOneBranch::Verdict(verdict(), exists),

@@ -190,7 +190,7 @@ pub fn exists_at(graph: &Graph, guards: &[Guard], values: &HashMap<Symbol, RBig>
                     Some(true) => break,
                     Some(false) => return Err(ValueError::Outside(guard.text(graph))),
                     None => {
-                        let why = "whether the term exists cannot be decided".to_owned();
+                        let why = "whether the term is defined cannot be decided".to_owned();
                         ValueError::NearEdge { why, term: guard.text(graph), bits }
                     }
                 },

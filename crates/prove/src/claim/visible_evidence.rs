@@ -45,7 +45,7 @@ pub(super) fn kept_outputs(
     sides.extend(vec![system.graph.integer(0); sides.len()]);
     let terms = Terms { sides: sides.clone(), guards: on.statement.guards.clone(), ..Terms::default() };
     let Ok(there) = OnBranch::new(system, &on.branch, &terms) else {
-        return Evidence::Unchecked("no state was found at which all of it exists".to_owned());
+        return Evidence::Unchecked("no state was found at which all of it is defined".to_owned());
     };
     let mut points = (0..ATTEMPTS).map(|attempt| there.draw(system, attempt, rng));
     let point = points.find(|point| there.sides(point).is_some());
@@ -65,7 +65,7 @@ pub(super) fn kept_outputs(
     match stated {
         Some(Ok(stated)) => Evidence::Proved(stated),
         Some(Err(why)) => Evidence::Unchecked(format!("it could not be written down: {why}")),
-        None => Evidence::Unchecked("no state was found at which all of it exists".to_owned()),
+        None => Evidence::Unchecked("no state was found at which all of it is defined".to_owned()),
     }
 }
 

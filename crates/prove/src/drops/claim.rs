@@ -193,7 +193,7 @@ fn at_almost_all(system: &mut System, claim: &ClaimedEverywhere, seed: u64) -> R
     let is_angle = system.angle_test();
     match generic_rank(&mut system.graph, entries, *columns, is_angle, &mut rng) {
         GenericRank::Rank { rank, log2_error, .. } => Ok((rank, log2_error)),
-        GenericRank::Pole(_) => Err("every state is a pole".to_owned()),
+        GenericRank::Pole(_) => Err("there is a singularity at every state".to_owned()),
         GenericRank::Functions => Err("functions are met that are not rational".to_owned()),
         GenericRank::Unknown(why) => Err(why),
     }
@@ -283,12 +283,12 @@ fn off_the_sets(
         return Ok(Everywhere::Open(open.join("; ")));
     }
     if explored.full.is_empty() {
-        return Ok(Everywhere::Open("no state was found at which all of it exists".to_owned()));
+        return Ok(Everywhere::Open("no state was found at which all of it is defined".to_owned()));
     }
     let states = explored.full.iter().filter_map(|full| state_on(algebra, search, &full.case, &claim.except));
     let states: Vec<State> = states.take(if claim.with_examples { MOST_EXAMPLES } else { 1 }).collect();
     if states.is_empty() {
-        return Ok(Everywhere::Open("no state was found at which all of it exists".to_owned()));
+        return Ok(Everywhere::Open("no state was found at which all of it is defined".to_owned()));
     }
     let minors = explored.full.iter().map(|full| identity(algebra, full)).collect();
     let cases = (explored.cases, explored.empty);
@@ -343,14 +343,14 @@ fn on_a_set(algebra: &mut Algebra<'_>, search: &mut Search<'_>, explored: &Explo
     let full = explored.full.iter().any(|full| state_on(algebra, search, &full.case, &[]).is_some());
     match (lowered, explored.full.is_empty() && open.is_empty()) {
         (None, true) => "there are no states".to_owned(),
-        (None, false) if full && open.is_empty() => "it is no lower".to_owned(),
-        (None, false) => "it is not decided whether it is lower".to_owned(),
-        (Some(lowered), true) if some => format!("it is lower at all states: {lowered}"),
+        (None, false) if full && open.is_empty() => "the rank is not deficient".to_owned(),
+        (None, false) => "it is not decided whether the rank is deficient".to_owned(),
+        (Some(lowered), true) if some => format!("the rank is deficient at all states: {lowered}"),
         (Some(lowered), true) => {
-            format!("it is lower at all states, of which none was found: {lowered}")
+            format!("the rank is deficient at all states, of which none was found: {lowered}")
         }
         (Some(lowered), false) => {
-            format!("it is not lower everywhere, or that is not decided; it is {lowered}")
+            format!("the rank is not deficient everywhere, or that is not decided; it is {lowered}")
         }
     }
 }

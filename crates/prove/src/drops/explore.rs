@@ -111,7 +111,7 @@ impl Search<'_> {
         Ok(found)
     }
 
-    /// The states of a chart at which the rows exist; none where that is nowhere.
+    /// The states of a chart at which the rows are defined; none where that is nowhere.
     pub fn domain(&self, algebra: &mut Algebra<'_>, chart: &Chart) -> Reach<Option<Case>> {
         let mut case = Case::of(chart);
         for guard in self.guards.clone() {
@@ -230,7 +230,7 @@ impl Search<'_> {
         loop {
             let point = self.point(algebra, case)?;
             let chosen = self.rows.independent(algebra, &case.chart, &point, self.rank, &mut self.rng);
-            let chosen = chosen.ok_or("no point was found at which the rows exist")?;
+            let chosen = chosen.ok_or("no point was found at which the rows are defined")?;
             let rank = chosen.iter().map(|chosen| chosen.columns.len()).max().unwrap_or(0);
             if rank == self.rank {
                 if let Some(found) = self.minor_on(algebra, case, &chosen)? {

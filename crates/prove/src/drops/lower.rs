@@ -37,7 +37,7 @@ impl Search<'_> {
                 )));
             }
             let ranks = self.rows.ranks(algebra, &case.chart, point, &mut self.rng);
-            let (_, growth) = ranks.ok_or("no point was found at which the rows exist")?;
+            let (_, growth) = ranks.ok_or("no point was found at which the rows are defined")?;
             if !self.rows.have_rested(growth) {
                 if self.rows.extend(algebra) {
                     return self.rank_on(algebra, case);
@@ -49,7 +49,7 @@ impl Search<'_> {
         for columns in self.rows.spans() {
             let basis = self.rows.shortest(algebra, &case.chart, (point, columns), &mut self.rng);
             let Some(basis) = basis else {
-                return short(Err("no point was found at which the rows exist".to_owned()));
+                return short(Err("no point was found at which the rows are defined".to_owned()));
             };
             if let Err(why) = self.borders_vanish(algebra, case, &basis, columns)? {
                 return short(Err(why));
@@ -166,7 +166,7 @@ impl Search<'_> {
             return Err("it is cut out by an equation that is linear in no symbol".to_owned());
         }
         let ranks = self.rows.ranks(algebra, &case.chart, point, &mut self.rng);
-        let (seen, growth) = ranks.ok_or("no point was found at which the rows exist")?;
+        let (seen, growth) = ranks.ok_or("no point was found at which the rows are defined")?;
         let mut error = f64::NEG_INFINITY;
         if self.rows.is_of_lie_derivatives() {
             let field = leaving_field(algebra, case);
@@ -209,7 +209,7 @@ impl Search<'_> {
         let entries = algebra.system.graph.substitute(&entries, &case.values);
         match generic_rank(&mut algebra.system.graph, &entries, columns, |_| false, &mut self.rng) {
             GenericRank::Rank { rank, log2_error, .. } => Ok((rank, log2_error)),
-            GenericRank::Pole(_) => Err("every state of it is a pole".to_owned()),
+            GenericRank::Pole(_) => Err("there is a singularity at every state of it".to_owned()),
             GenericRank::Functions => Err("functions are met that are not rational".to_owned()),
             GenericRank::Unknown(why) => Err(why),
         }

@@ -201,7 +201,7 @@ pub(super) fn initial_values(system: &mut System) -> Result<Assignment, String> 
 /// # Errors
 /// In words.
 pub(super) fn on_all_states(system: &System) -> Result<(), String> {
-    system.require_continuous("where a rank drops is decided by Lie derivatives")?;
+    system.require_continuous("the singular set is found by Lie derivatives")?;
     if !system.zero_outputs().is_empty() {
         return Err(
             "outputs that are zero tie the states to signals: no rank is asked for at all of them".to_owned()
@@ -259,7 +259,7 @@ fn drops_of(
         })?;
         answer.out_of_reach.clone_from(&explored.stopped);
         if explored.full.is_empty() && explored.short.is_empty() {
-            answer.out_of_reach = Some("there is no state at which all terms exist".to_owned());
+            answer.out_of_reach = Some("there is no state at which all terms are defined".to_owned());
         }
         answer.cases = (explored.cases, explored.empty);
         answer.minors = explored.full.iter().map(|full| used(algebra, &search.rows, full)).collect();

@@ -160,7 +160,7 @@ pub enum RankError {
     #[error(transparent)]
     Unsolved(#[from] Unsolved),
     /// A symbol that is both fixed and solved for.
-    #[error("'{0}' is held fixed and solved for in a condition; choose one")]
+    #[error("'{0}' is fixed and solved for in a condition; choose one")]
     HeldAndSolved(String),
     /// No field moves the states, or every state is a pole.
     #[error(transparent)]

@@ -283,7 +283,7 @@ impl Run<'_> {
             if speaks_of_all_states(system) {
                 // where there is no such question the claims say why
                 let drops = || Ok(where_it_drops(&mut system.clone(), seed, interrupt).ok());
-                self.keep(place, "where the rank drops", drops, |file, found| file.drops = found);
+                self.keep(place, "the singular set", drops, |file, found| file.drops = found);
             }
             // what an interrupt has left without a rank gets no picture that nobody asked for
             let observable = self.found().files[place].observable();

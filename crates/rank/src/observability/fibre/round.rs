@@ -177,7 +177,7 @@ pub(super) fn random_fibre(
             Err(Trouble::TooLarge(why)) => return Err(NoRound::TooLarge(why)),
         }
     }
-    Err(NoRound::Failed(format!("{ATTEMPTS} random points were poles")))
+    Err(NoRound::Failed(format!("{ATTEMPTS} random points were singularities")))
 }
 
 /// An error that should never occur.

@@ -54,10 +54,10 @@ pub(super) fn answer_in_steps(
         }
     }
     let Some(best) = best else {
-        return nothing_known(format!("{ATTEMPTS} random sequences met poles: {refused}"));
+        return nothing_known(format!("{ATTEMPTS} random sequences met singularities: {refused}"));
     };
     if bounds.as_ref().is_ok_and(|bounds| answer.rounds < bounds.rounds) && best.0 < answer.dimension {
-        return nothing_known(format!("too many of the random sequences met poles: {refused}"));
+        return nothing_known(format!("too many of the random sequences met singularities: {refused}"));
     }
     answer.open = None;
     let closed = system.closed_coordinates();

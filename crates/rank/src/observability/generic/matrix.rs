@@ -109,7 +109,7 @@ fn rank_of(program: &Program, entries: usize, columns: usize, rng: &mut impl Rng
     }
     match divisor {
         Some(divisor) if points == 0 => GenericRank::Pole(divisor),
-        _ => GenericRank::Unknown("too many of the random points were poles".to_owned()),
+        _ => GenericRank::Unknown("too many of the random points were singularities".to_owned()),
     }
 }
 

@@ -130,7 +130,7 @@ impl Probe {
                 Err(Trouble::Refused(refusal)) => refused = refusal.to_string(),
             }
         }
-        Err(Some(format!("{ATTEMPTS} random points were poles: {refused}")))
+        Err(Some(format!("{ATTEMPTS} random points were singularities: {refused}")))
     }
 
     fn indicial_in(
@@ -205,7 +205,7 @@ impl Probe {
                 Err(refusal) => refused = refusal.to_string(),
             }
         }
-        Err(format!("{ATTEMPTS} random points were poles: {refused}"))
+        Err(format!("{ATTEMPTS} random points were singularities: {refused}"))
     }
 }
 

@@ -56,7 +56,7 @@ impl Probe {
                 Err(refusal) => refused = refusal.to_string(),
             }
         }
-        Err(format!("{ATTEMPTS} random points were poles: {refused}"))
+        Err(format!("{ATTEMPTS} random points were singularities: {refused}"))
     }
 
     fn orders_up_to(
@@ -102,7 +102,7 @@ impl Probe {
                 Err(refusal) => refused = refusal.to_string(),
             }
         }
-        Err(format!("{ATTEMPTS} random points were poles: {refused}"))
+        Err(format!("{ATTEMPTS} random points were singularities: {refused}"))
     }
 
     fn orders_in(&self, field: PrimeField, rng: &mut ChaCha8Rng) -> Result<Orders, Refusal> {

@@ -195,7 +195,7 @@ impl Probe {
                 Err(refusal) => refused = refusal.to_string(),
             }
         }
-        Err(format!("{attempts} random points were poles: {refused}"))
+        Err(format!("{attempts} random points were singularities: {refused}"))
     }
 
     /// The unobservable directions at one random point, and the point: see [`Directions`].
@@ -211,7 +211,7 @@ impl Probe {
                 Err(refusal) => refused = refusal.to_string(),
             }
         }
-        Err(format!("{ATTEMPTS} random points were poles: {refused}"))
+        Err(format!("{ATTEMPTS} random points were singularities: {refused}"))
     }
 
     /// What the equations are given at a point, in the order of [`Probe::directions_at`].

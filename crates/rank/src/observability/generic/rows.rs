@@ -50,7 +50,7 @@ impl Probe {
                 Err(refusal) => refused = refusal.to_string(),
             }
         }
-        Err(format!("{ATTEMPTS} random points were poles: {refused}"))
+        Err(format!("{ATTEMPTS} random points were singularities: {refused}"))
     }
 
     fn output_rows_in(&self, field: PrimeField, rng: &mut ChaCha8Rng) -> Result<Vec<Vec<Vec<u64>>>, Refusal> {

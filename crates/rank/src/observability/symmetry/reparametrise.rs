@@ -26,7 +26,7 @@ pub enum NotReparametrised {
     },
     /// The coordinates could not be solved for.
     #[error(
-        "the states could not be expressed by observable functions, with as many of them held at 0 or 1 as are unobservable"
+        "the states could not be expressed by observable functions, with as many of them fixed at 0 or 1 as are unobservable"
     )]
     NoSection,
     /// Known signals would have to be declared in the new file as in the old one.
