@@ -257,7 +257,7 @@ class Rank(Answer):
 
     @cached_property
     def states(self) -> Table | None:
-        """A row a sampled state, where `table=True` asked for it: index, rank (-1 at a pole), certified, smallest_singular_value,
+        """A row a sampled state, where `table=True` asked for it: index, rank (-1 at a singularity), certified, smallest_singular_value,
         condition (NaN where there is none), and with `coordinates=True` the coordinates, angles in radians; `branch` where there are
         several."""
         columns = self._found.table()
@@ -298,7 +298,7 @@ class Designs(Answer):
 
 
 class SingularSet(Answer):
-    """The sets on which the rank drops, each by its equations, with a proof that it drops nowhere else where there is one."""
+    """The singular set: sets of rank-deficient states, each by its equations, with a proof that there are no others where there is one."""
 
     @cached_property
     def page(self) -> Page:
@@ -338,14 +338,14 @@ class Map:
         self.x, self.y = x, y
         #: Their values, of shape (columns,) and (rows,).
         self.grids = grids
-        #: By unknown its standard deviation over its prior one, of shape (rows, columns): infinite where it is unobservable, NaN at a pole.
+        #: By unknown its standard deviation over its prior one, of shape (rows, columns): infinite where it is unobservable, NaN at a singularity.
         self.deviations = deviations
         #: The values that were fixed, as texts of the form name=value.
         self.at = at
 
     @property
     def worst(self) -> numpy.ndarray:
-        """That of the least observable unknown, of shape (rows, columns); NaN at a pole."""
+        """That of the least observable unknown, of shape (rows, columns); NaN at a singularity."""
         import numpy
 
         return numpy.max(list(self.deviations.values()), axis=0)
@@ -457,7 +457,7 @@ class Value:
 class Verdicts(NamedTuple):
     """What was decided of some states: arrays of shape (states,)."""
 
-    #: int64. The rank; -1 at a pole, and where something is infinite or not a number.
+    #: int64. The rank; -1 at a singularity, and where something is infinite or not a number.
     rank: numpy.ndarray
     #: bool. Whether it is proved for this very state.
     certified: numpy.ndarray
@@ -592,12 +592,17 @@ class Observation(Answer):
             names = ("experiment", "output", "time", "value", "expected", "deviation", "residual")
             # at rest there is no time
             return Table({name: numpy.array([numpy.inf if row[name] is None else row[name] for row in rows]) for name in names})
-        found = self._table("readings")
+        found = self._table("measurements")
         assert found is not None
         return found
 
-    #: What `measurements` was called before, and still answers to.
-    readings = measurements
+    @property
+    def readings(self) -> Table:
+        """Deprecated: the former name of `measurements`."""
+        import warnings
+
+        warnings.warn("Observation.readings is called measurements", DeprecationWarning, stacklevel=2)
+        return self.measurements
 
     @property
     def motion(self) -> Table | None:
@@ -628,9 +633,9 @@ class Observation(Answer):
 
     @property
     def estimates(self) -> Table:
-        """What is estimated, at the beginning of the first window of the method that is shown: name, estimate, deviation.
+        """What is estimated, at the first sample of the first window of the method that is shown: name, estimate, deviation.
 
-        deviation: a standard deviation; infinite where it is unobservable or what is estimated was held; NaN where the search came to no end, and the estimate is where it stopped.
+        deviation: a standard deviation; infinite where it is unobservable or what is estimated was fixed; NaN where the search came to no end, and the estimate is where it stopped.
         Of several experiments the best parameters; NaN too of one that lies at a bound.
         """
         import numpy
@@ -652,7 +657,7 @@ class Observation(Answer):
         return Table({"name": numpy.array(names), "estimate": numpy.array(values, dtype=float), "deviation": numpy.array(bounds, dtype=float)})
 
     def covariance(self, window: int = 0) -> numpy.ndarray | None:
-        """The covariance of the estimates at the beginning of a window, of shape (estimates, estimates), in their order; None where there is no such window, where its search came to no end,
+        """The covariance of the estimates at the first sample of a window, of shape (estimates, estimates), in their order; None where there is no such window, where its search came to no end,
         or where something is unobservable in it."""
         if not 0 <= window < len(self.updates) or not self.updates[window]["status"].startswith("converged"):
             return None
@@ -677,7 +682,7 @@ class Observation(Answer):
         if page is None:
             from .errors import Error
 
-            raise Error("several systems side by side have no page", "text and json say all there is")
+            raise Error("a scene with a system for each mode has no page", "text and json say all there is")
         return Page(page)
 
     def plot(self, axes: Any = None) -> Any:

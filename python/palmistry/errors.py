@@ -65,7 +65,7 @@ class ReadError(Error):
 
 
 class EvaluationError(Error):
-    """An expression that has no value at a point: the point is a pole, outside of a domain, or lacks a value."""
+    """An expression that has no value at a point: the point is a singularity, outside of a domain, or lacks a value."""
 
 
 def _again(kind, fields):

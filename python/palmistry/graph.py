@@ -192,7 +192,7 @@ class Interval:
 
     def sign(self):
         is_told = self.low == self.high or not self.low <= 0 <= self.high
-        return (self.low > 0) - (self.high < 0) if is_told else refuse("not told from zero")
+        return (self.low > 0) - (self.high < 0) if is_told else refuse("not distinguished from zero")
 
 def enclosed(node, x, *other):
     """The rule of intervals; a symbol that is not given has some value."""

@@ -149,7 +149,7 @@ class System:
     def declare(self, kind, text):
         words = r"[\[@]|\b(?:state|param|let|drift|input|field|output)\b"
         if kind in ("unknown", "experiments") or re.search(words + "|=" * (kind == "initial"), text):
-            refuse("a vector, an experiment, an unknown signal, a value at the beginning, or entries that share a line")
+            refuse("a vector, an experiment, an unknown signal, an initial value, or entries that share a line")
         waiting = []
         for name, *rest in (re.findall(NAME + r"|\S", part) for part in text.split(",")):
             waiting.append(name)

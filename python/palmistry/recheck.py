@@ -84,7 +84,7 @@ def points(given, seed):
             yield point
 
 def motion(system, given):
-    """What is seen, and what differentiates it: with the values of constants put in, which commutes with that and is shorter."""
+    """The outputs, and what differentiates it: with the values of constants put in, which commutes with that and is shorter."""
     names, fixed = {*system.names["param"], "pi"} - {*system.names["state"], *system.names["unknown"]}, Map(put_in)
     for name, value in reversed(given):
         if all(node.args[0] in names for node in (name, *value.below()) if node.kind == "symbol"):
@@ -95,7 +95,7 @@ def motion(system, given):
     return [fixed[x] for x in system.seen()], [derivation(lambda name, f=f: fixed[f[symbol(name)]]) for f in fields]
 
 def codistribution(system, point, moving, patience):
-    """The rows of all words; those behind more words than `patience` that add nothing are not looked at."""
+    """The rows of all Lie derivatives; those behind more of them than `patience` that add nothing are not looked at."""
     columns, (seen, fields) = system.names["state"] + system.names["unknown"], moving
     words, rows, basis = dict.fromkeys((word, 0) for word in seen), [], {}
     waiting = [*words]
@@ -107,11 +107,11 @@ def codistribution(system, point, moving, patience):
         waiting += [pair for pair in new if pair not in words]
         words.update(new)
         if len(words) > WORDS:
-            refuse(f"more than {WORDS} words")
+            refuse(f"more than {WORDS} Lie derivatives")
     return rows
 
 def is_so(system, point, asked, of, claimed, moving, patience):
-    """Whether an identity, a rank at almost all states, or what is observable there is so at a point; and the rank."""
+    """Whether an identity, a generic rank, or what is observable generically is so at a point; and the rank."""
     if asked == "=":
         return all(point[gap] == 0 for gap in gaps(of)) if of[1] == "=" else refuse("an inequality"), 0
     basis, rows = {}, each(point.__getitem__, of) if asked == "rank" and of else codistribution(system, point, moving, patience)
@@ -121,7 +121,7 @@ def is_so(system, point, asked, of, claimed, moving, patience):
     return all(adds(point.gradient(x, system.columns()), {**basis}, point.prime) == asked.startswith("un") for x in of), rank
 
 def at_random(system, record, _, seed):
-    """An identity, or what is claimed of almost all states, at random points."""
+    """An identity, or what is claimed generically, at random points."""
     (asked, of, claimed, conditions), found, least = system.statement(system.claims[record["id"]]), 0, None
     is_proved, sense = record["verdict"] == "proved", record["asked"]["sense"]
     given, patience = solved(system, conditions), len(conditions) + 1 if conditions else 0
@@ -142,7 +142,7 @@ def at_random(system, record, _, seed):
     return refuse(f"it has values at {found} of {TRIES} random points")
 
 def proved(system, record, evidence, seed):
-    """What is so at random points, and is shown for all states where it is an equation that can be multiplied out, or almost all where fields that keep the system tell the rest."""
+    """What is so at random points, and is shown for all states where it is an equation that can be multiplied out, or generically where fields that keep the system tell the rest."""
     found = at_random(system, record, evidence, seed)
     asked, of, _, conditions = system.statement(system.claims[record["id"]])
     if found[0] not in ("consistent", "half confirmed") or record["verdict"] != "proved":
@@ -155,7 +155,7 @@ def proved(system, record, evidence, seed):
     return ("confirmed", "by the fields that keep the system") if is_shown else found
 
 def by_fields(system, asked, of, seed, is_whole):
-    """Whether a rank is no more than was found, or functions are observable or not, by fields that keep the system; a rank that is no less at one point modulo a prime is no less at almost all states."""
+    """Whether a rank is no more than was found, or functions are observable or not, by fields that keep the system; a rank that is no less at one point modulo a prime is generically no less."""
     columns, moving = system.names["state"] + system.names["unknown"], motion(system, [])
     if is_whole and len(columns) > WIDE or columns != system.columns():
         return False
@@ -179,7 +179,7 @@ def by_fields(system, asked, of, seed, is_whole):
 def dot(row, other, prime): return sum(x * y for x, y in zip(row, other)) % prime
 
 def of_a_rank(system, of, claimed, least, is_proved, where):
-    """What a minor that is not zero at a point implies: at almost all states the rank is no less."""
+    """What a minor that is not zero at a point implies: generically the rank is no less."""
     if not least:
         return "consistent", where
     if not is_proved:
@@ -225,7 +225,7 @@ def chosen(rows, columns, height, width):
         doubt("it has no such minor")
 
 def named_rows(system, words, of=None):
-    """Rows by their names: those of a matrix, or the differentials of words."""
+    """Rows by their names: those of a matrix, or the differentials of Lie derivatives."""
     if of:
         places = [int(re.fullmatch(r"row (\d{1,6})", word)[1]) - 1 for word in words]
         return [of[place] if place >= 0 else doubt("no such row") for place in places]
@@ -251,12 +251,12 @@ def exact_rank(rows, point):
     return len(basis)
 
 def further_rows(system, words):
-    """The differentials of all Lie derivatives of one order more than those of some words."""
+    """The differentials of all Lie derivatives of one order more than some."""
     last, found = system.seen(), []
     for _ in range(2 + max((len(word.split(" L")) - (not word.startswith("L")) for word in words), default=0)):
         found, last = found + last, [system[field].along[x] for field in system.names["moving"] for x in last]
         if len(found) > WORDS:
-            refuse(f"more than {WORDS} words")
+            refuse(f"more than {WORDS} Lie derivatives")
     units = [system.unit(name) for name in system.columns()]
     return [tuple(unit[x] for unit in units) for x in found]
 

@@ -231,7 +231,7 @@ class System:
         """The rank of the observability codistribution, generically and at sampled states.
 
         samples: how many states are drawn; by default 1000 where the Lie derivatives are short, else none. seed: of these states.
-        at: states and parameters held fixed, angles in radians. where: conditions, as 'sin(phi) = 0' or '0 < x < 1'.
+        at: states and parameters with fixed values, angles in radians. where: conditions, as 'sin(phi) = 0' or '0 < x < 1'.
         order: Lie derivatives of exactly up to this order. verdict: 'certified' or 'computed'. digits: of the worst state's singular values.
         table: a row a state in `.states`; coordinates: these too. times: whether `seconds` are given, which no two runs have alike.
 
@@ -315,11 +315,11 @@ class System:
         """What holds generically, where that is one answer."""
         found = self.rank(samples=0)
         if len(found.branches) > 1:
-            raise Error(f"what the file says of the beginning has {len(found.branches)} branches, and each has an answer of its own", "ask rank(samples=0).branches")
+            raise Error(f"the initial conditions of the file have {len(found.branches)} branches, and each has an answer of its own", "ask rank(samples=0).branches")
         return found
 
     def singular_set(self, seed: int = 1) -> SingularSet:
-        """The sets on which the rank drops, each by its equations, with a proof that off them it does not: `palmistry rank --singular-set`.
+        """The singular set: sets of rank-deficient states, each by its equations, with a proof that there are no others: `palmistry rank --singular-set`.
 
         >>> beacon = palmistry.System.parse('system "s" state x, y drift f others\\' = 0 output x^2 + y^2, x*y')
         >>> print(beacon.singular_set().text.splitlines()[2])
@@ -508,7 +508,7 @@ class System:
     ) -> Table:
         """How well each unknown is observable at your own states: its standard deviation, normalised by its prior one over the sample box.
 
-        A column an unknown, of shape (states,); infinite where it is unobservable, or not distinguishable from it; NaN at a pole. These are the
+        A column an unknown, of shape (states,); infinite where it is unobservable, or not distinguishable from it; NaN at a singularity. These are the
         numbers of the maps: every Lie derivative of up to `order` fields is measured up to the standard deviation of its values over the sample
         box. states, at: as in `verdicts`. Computed in doubles, and not certified.
 

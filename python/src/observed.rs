@@ -21,7 +21,7 @@ use serde_json::json;
 pub enum Seen {
     /// A system or a body in motion.
     Moving { experiment: Box<Experiment>, answers: Vec<Answer>, studied: Box<Studied> },
-    /// Several systems side by side.
+    /// A system for each mode.
     Modes { experiment: Box<Experiment>, windows: Vec<ModeWindow> },
     /// A body that is moved slowly.
     Slow { experiment: Box<SlowExperiment>, answers: Box<SlowAnswers>, study: Vec<StudyRow> },
@@ -97,7 +97,7 @@ impl ObservationFound {
         }
     }
 
-    /// The whole page; none of several systems side by side.
+    /// The whole page; none of a system for each mode.
     fn page(&self) -> Option<String> {
         let interrupted = self.interrupted;
         match &self.seen {
@@ -117,14 +117,14 @@ impl ObservationFound {
         }
     }
 
-    /// A table by its name: `readings`, `motion`, `track` or `outline`; none where there is no such thing.
+    /// A table by its name: `measurements`, `motion`, `track` or `outline`; none where there is no such thing.
     fn table<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Bound<'py, PyDict>>> {
         let found = match (&self.seen, name) {
-            (Seen::Moving { experiment, .. } | Seen::Modes { experiment, .. }, "readings") => {
+            (Seen::Moving { experiment, .. } | Seen::Modes { experiment, .. }, "measurements") => {
                 Some(Ok(experiment.record.clone()))
             }
-            (Seen::Slow { experiment, .. }, "readings") => Some(experiment.record()),
-            (Seen::Space { experiment, .. }, "readings") => Some(experiment.measurements.record()),
+            (Seen::Slow { experiment, .. }, "measurements") => Some(experiment.record()),
+            (Seen::Space { experiment, .. }, "measurements") => Some(experiment.measurements.record()),
             (Seen::Moving { experiment, .. } | Seen::Modes { experiment, .. }, "motion") => {
                 match (&experiment.simulation, &experiment.motion) {
                     (Some(simulation), _) => Some(simulation.table()),
@@ -154,7 +154,7 @@ impl ObservationFound {
         }
     }
 
-    /// The names of what is sought.
+    /// The names of what is estimated.
     fn sought(&self) -> Vec<String> {
         match &self.seen {
             Seen::Moving { experiment, .. } => experiment.names().into_iter().map(str::to_owned).collect(),
@@ -185,7 +185,7 @@ impl ObservationFound {
         Ok(Some(found))
     }
 
-    /// The covariance of what is sought at the beginning of a window, of shape (sought, sought); none where there is no such window, or something
+    /// The covariance of what is estimated at the first sample of a window, of shape (estimates, estimates); none where there is no such window, or something
     /// is not observable in it.
     fn covariance<'py>(&self, py: Python<'py>, window: usize) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         let update = self.track().and_then(|track| track.updates.get(window));

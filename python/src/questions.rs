@@ -80,7 +80,7 @@ pub fn design(
     found.map(made).map_err(|why| unusable(py, &why.to_string(), None))
 }
 
-/// The sets on which the rank drops.
+/// The singular set.
 #[pyfunction]
 pub fn drops(py: Python<'_>, system: &System, seed: u64) -> PyResult<Told> {
     let mut system = Read::clone(system.read_system());

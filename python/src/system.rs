@@ -263,7 +263,7 @@ impl System {
     }
 
     /// The standard deviation of each unknown over its prior one at states that are handed over, an array a coordinate: infinite where it is
-    /// not observable, not a number at a pole.
+    /// not observable, not a number at a singularity.
     fn standard_deviations<'py>(
         &self,
         py: Python<'py>,
