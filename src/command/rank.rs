@@ -44,7 +44,7 @@ use std::sync::{Arc, Mutex, PoisonError};
   palmistry rank mysystem.proof --samples 100000
   palmistry rank mysystem.proof --at omega0=0              on the set where omega0 is zero
   palmistry rank mysystem.proof --where 'sin(phi1) = 0'    on the set of a condition
-  palmistry rank mysystem.proof --singular-set             the states at which the rank drops, with a proof that it drops nowhere else
+  palmistry rank mysystem.proof --singular-set             the states at which the rank drops, with a proof that there are no others
   palmistry rank mysystem.proof --global                   each unknown globally, locally or not identifiable, with the number of solutions
   palmistry rank mysystem.proof --global --at omega0=0     and the rank where omega0 is zero
   palmistry rank mysystem.proof --functions                generators of all identifiable functions

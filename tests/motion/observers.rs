@@ -9,7 +9,7 @@ static NEVER: AtomicBool = AtomicBool::new(false);
 
 /// `x'' = -w^2 x + u`, the frequency being a state that does not move.
 const OSCILLATOR: &str = r#"
-    system "An oscillator whose place is seen"
+    system "An oscillator whose position is measured"
     state x, v, w
     param u = 0
     drift f
