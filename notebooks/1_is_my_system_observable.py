@@ -13,7 +13,7 @@
 # %% [markdown]
 # # Is my system observable?
 #
-# A robot in the plane has a position `(x, y)` and a heading `theta`. It drives and turns as it is told, and measures how far away a beacon is.
+# A robot in the plane has a position `(x, y)` and a heading `theta`. It drives and turns as it is commanded, and measures how far away a beacon is.
 # Can it know where it is? We write the system down as a paper would, and ask. With three beacons the answer looks like this: over the plane, how well it knows the worst of the three,
 # as a part of what it knew before.
 
@@ -72,15 +72,15 @@ assert found.histogram == {2: 1000} and found.certified == 1000
 # ## What is unobservable
 #
 # None of the three is observable alone. The unobservable direction is a vector field: along it no measurement of the beacon changes. It is found in
-# closed form, and so are functions of the states that *are* seen.
+# closed form, and so are functions of the states that *are* observable.
 
 # %%
 [field] = found.json["unobservable_directions"]["fields"]
 assert field["components"] == {"x": "-y", "y": "x", "theta": "1"}
-seen = [function["text"] for function in found.json["unobservable_directions"]["functions"]]
-assert sorted(seen) == ["x*cos(theta) + y*sin(theta)", "x*sin(theta) - y*cos(theta)"]
+observable = [function["text"] for function in found.json["unobservable_directions"]["functions"]]
+assert sorted(observable) == ["x*cos(theta) + y*sin(theta)", "x*sin(theta) - y*cos(theta)"]
 print("unobservable direction:", field["text"])
-print("seen:    ", ", ".join(seen))
+print("observable:", ", ".join(observable))
 
 # %% [markdown]
 # It turns the robot about the beacon, heading and all. Below, the three robots of one colour have the same measurements for ever, whatever they do: here all of
@@ -88,7 +88,7 @@ print("seen:    ", ", ".join(seen))
 
 # %%
 def along(state, angle):
-    """The unseen field, followed so far: a rotation."""
+    """The flow of the unobservable vector field: a rotation."""
     x, y, theta = state
     c, s = np.cos(angle), np.sin(angle)
     return np.array([c * x - s * y, s * x + c * y, theta + angle])
@@ -129,7 +129,7 @@ assert np.abs(same).max() < 1e-12
 
 # %%
 claimed = System.parse(ROBOT.replace("OUTPUTS", "q1") + """
-claim unseen: [d(q1); d(L(drive, q1)); d(L(turn, drive, q1))]*[-y; x; 1] = [0; 0; 0]
+claim turning: [d(q1); d(L(drive, q1)); d(L(turn, drive, q1))]*[-y; x; 1] = [0; 0; 0]
 """)
 [claim] = claimed.prove()
 assert claim.verdict == "proved"

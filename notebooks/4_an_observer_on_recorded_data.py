@@ -59,7 +59,7 @@ record("drive.csv", readings)
 print((folder / "drive.csv").read_text()[:330])
 
 # %% [markdown]
-# A scene says which equations to believe, how well the sensors read, and what is sought. There is no first guess: observers begin in the middle of the box that the model's file
+# A scene says which equations to believe, how accurate the sensors are, and what is estimated. There is no first guess: observers begin in the middle of the box that the model's file
 # gives for its states.
 
 # %%
@@ -85,7 +85,7 @@ found = observe(folder / "drive.toml")
 [observer] = found.observers
 [update] = observer["updates"]
 fit = update["fit"]
-print(f"{update['status']}; chi square {fit['chi_square']:.0f} for {fit['degrees_of_freedom']} degrees of freedom; it fits: {fit['fits']}")
+print(f"{update['status']}; chi square {fit['chi_square']:.0f} for {fit['degrees_of_freedom']} degrees of freedom; passes the chi-square test: {fit['fits']}")
 for name, true in zip(("px", "py", "theta"), truth[0]):
     state = update["states"][name]
     print(f"{name:6} {state['recovered']:9.4f} +- {state['bound']:.4f}   true {true:7.4f}, off by {abs(state['recovered'] - true) / state['bound']:.1f} bounds")
@@ -120,7 +120,7 @@ plt.show()
 # %% [markdown]
 # ## When a sensor is not as it should be
 #
-# Now the second range reads two percent too much. The search still converges, to a state; the program says that what is left is more than the noise explains, and what would
+# Now the second range is two percent too large. The search still converges, to a state; the program says that the residuals are larger than the noise explains, and what would
 # explain it.
 
 # %%
@@ -130,7 +130,7 @@ found = observe(folder / "drive.toml")
 [update] = found.observers[0]["updates"]
 fit = update["fit"]
 best = max(update["suspects"], key=lambda suspect: suspect["would_explain"]["chi_square"] if suspect["would_explain"] else 0)
-print(f"chi square {fit['chi_square']:.0f} for {fit['degrees_of_freedom']} degrees of freedom; it fits: {fit['fits']}")
+print(f"chi square {fit['chi_square']:.0f} for {fit['degrees_of_freedom']} degrees of freedom; passes the chi-square test: {fit['fits']}")
 print(f"most likely {best['what']}, off by {100 * best['would_explain']['error']:.2f} %")
 assert not fit["fits"] and fit["probability"] < 1e-6
 assert best["what"] == f"the gain of {NAMES[1]}" and abs(best["would_explain"]["error"] - 0.02) < 0.004

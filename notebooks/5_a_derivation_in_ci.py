@@ -51,7 +51,7 @@ claim swing:   l*L(f, omega) + L(f, v)*cos(phi) + g*sin(phi) = 0
 claim power:   L(f, energy) = F*v
 claim hanging: L(f, omega) at {phi = 0} = -F/(l*M)
 claim jerk:    L(f, f, phi) = (-F*cos(phi) + m*l*omega^2*sin(phi)*cos(phi) - (M + m)*g*sin(phi))/(l*D)
-claim seen:    rank = 4
+claim full:    rank = 4
 """
 
 system = System.parse(CART)

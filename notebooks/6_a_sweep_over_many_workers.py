@@ -61,8 +61,8 @@ assert palmistry.sweep(system, 2e4, client=client, shards=7, folder=folder / "pa
 # %% [markdown]
 # ## Studies of an observer
 #
-# The trials of a scene's studies are cut in the same way: draws of noise at several levels, and first guesses on a grid. A Van der Pol oscillator is seen through its position; position, speed and
-# damping are sought.
+# The trials of a scene's studies are cut in the same way: draws of noise at several levels, and first guesses on a grid. A Van der Pol oscillator is measured by its position; position, speed and
+# damping are estimated.
 
 # %%
 scene = (SYSTEMS / "van_der_pol.toml").read_text()

@@ -92,13 +92,13 @@ assert verdicts == {"a": "globally identifiable", "b": "non-identifiable", "c": 
 assert set(direction) == {"hunters", "b"}
 
 # %% [markdown]
-# So a fit of all six has no answer, whatever the optimiser: the observer says so, and tells what it would take to say more.
+# So a fit of all six has no answer, whatever the optimiser: the observer says so, and what would make them identifiable.
 
 # %%
 everything = palmistry.System.parse(model.source + RANGES.rstrip() + "  b in [0.2, 2]\n")
-blind = palmistry.observe(everything, {"time": times, everything.outputs[0]: counts}, noise=NOISE, times=False)
-assert not blind.fits
-print(blind.text)
+all_six = palmistry.observe(everything, {"time": times, everything.outputs[0]: counts}, noise=NOISE, times=False)
+assert not all_six.fits
+print(all_six.text)
 
 # %% [markdown]
 # ## With one rate known

@@ -76,7 +76,7 @@ assert set(robot.rank(samples=0).unknowns["verdict"].tolist()) == {"locally obse
 # %% [markdown]
 # ## What the log says
 #
-# A row of the DataFrame is a sample; its index is the time. Each estimate has a standard deviation, which is the bound that no unbiased estimate beats, and a test says whether what is left is what the noise explains.
+# A row of the DataFrame is a sample; its index is the time. Each estimate has a standard deviation, which is the bound that no unbiased estimate beats, and a test says whether the residuals are what the noise explains.
 
 # %%
 print(found.text)
