@@ -13,7 +13,8 @@ const PAPERS: [&str; 4] = ["moll2002", "koteich2015", "martinelli2005", "hermann
 const HEAD: &str = "# Gallery
 
 The papers and models that came with the program, each with its diagram: an arrow leads from a state to those that stand in its rate, a ring marks
-states that appear in an output, squares are signals; green is generically observable, red is not, grey is known or undecided.
+states that appear in an output, squares are signals; green is generically observable, red is not, grey is known or undecided. Beside a single
+state stand its unknown constants and its inputs.
 `palmistry verify --paper NAME` checks all of a paper; `palmistry lab` lists all of them; `palmistry rank FILE` says what the ranks rest on.
 
 ";
@@ -45,14 +46,11 @@ fn in_code(text: &str) -> String {
 
 impl Gallery {
     fn diagram(&mut self, name: &str, system: &System, branch: &BranchAnswer) {
-        match structure_picture(system, Some(branch), DiagramGround::Alone) {
-            Some(picture) => {
-                let file = format!("{name}.svg");
-                let _ = writeln!(self.page, "![Diagram of {name}](pictures/gallery/{file})\n");
-                self.pictures.push((file, format!("{picture}\n")));
-            }
-            None => self.page.push_str("No diagram: one state alone, or too many to be made out.\n\n"),
-        }
+        let picture = structure_picture(system, Some(branch), DiagramGround::Alone)
+            .unwrap_or_else(|| panic!("{name} has no diagram"));
+        let file = format!("{name}.svg");
+        let _ = writeln!(self.page, "![Diagram of {name}](pictures/gallery/{file})\n");
+        self.pictures.push((file, format!("{picture}\n")));
     }
 
     /// Two lines: how large it is and its rank; what is observable and what is not.
@@ -95,20 +93,17 @@ impl Gallery {
         let year = paper.year.map_or(String::new(), |year| format!(" ({year})"));
         let _ = writeln!(self.page, "## {}\n", paper.title);
         let first = systems.iter().find_map(|system| Some((system, branch_of(system)?)));
-        if let Some((system, branch)) = first {
-            self.diagram(folder, system, &branch);
-        }
+        let (system, branch) = first.expect("a system with a rank");
+        self.diagram(folder, system, &branch);
         let _ = writeln!(
             self.page,
-            "- {}{year}. [{} and {}](../../proofs/{folder}/).",
+            "- {}{year}. [{} and {}](../../proofs/{folder}/). Diagram and rank: {}.",
             paper.authors.join(", "),
             counted(systems.len(), "proof file"),
-            counted(claims, "claim")
+            counted(claims, "claim"),
+            system.title
         );
-        if let Some((system, branch)) = systems.iter().find_map(|system| Some((system, branch_of(system)?))) {
-            let _ = writeln!(self.page, "- The diagram: {}.", system.title);
-            self.lines(system, &branch);
-        }
+        self.lines(system, &branch);
     }
 
     fn model(&mut self, path: &Path) {
@@ -137,6 +132,11 @@ fn the_gallery_is_what_the_program_finds() {
     assert_eq!(files.len(), 40);
     files.iter().for_each(|file| gallery.model(file));
     assert_eq!(gallery.page.matches("\n## ").count(), PAPERS.len() + files.len());
+    // a picture and three lines each
+    for entry in gallery.page.split("\n## ").skip(1) {
+        let count = |begin: &str| entry.lines().filter(|line| line.starts_with(begin)).count();
+        assert_eq!((count("!["), count("- ")), (1, 3), "{entry}");
+    }
     let (page, pictures) = (root().join("book/src/gallery.md"), root().join("book/src/pictures/gallery"));
     let page_text = gallery.page.trim_end().to_owned() + "\n";
     if std::env::var("PALMISTRY_BOOK").is_ok_and(|word| word == "renew") {

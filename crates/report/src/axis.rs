@@ -1,7 +1,8 @@
 //! Axes of pictures: names with their units, numbers that differ where their values do, and the room that they need.
 
-use palmistry_lang::System;
-use palmistry_math::expression::notation::in_letters;
+use crate::drawing::{BACK, BELOW};
+use palmistry_lang::{Looks, System};
+use palmistry_math::expression::notation::letter_and_index;
 
 /// The unit of a symbol from the dimension that its file declares, or that follows from what it declares; none where it is
 /// unknown or there is none.
@@ -14,10 +15,45 @@ pub fn unit_of(system: &System, name: &str) -> Option<String> {
     }
 }
 
+/// A unit as people write it: `kg·m²/s` for `kg*m^2/s`.
+pub(super) fn unit_in_print(unit: &str) -> String {
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let mut out = String::with_capacity(unit.len());
+    let mut is_exponent = false;
+    for c in unit.chars() {
+        match (c, c.to_digit(10)) {
+            ('*', _) => out.push('·'),
+            ('^', _) => {}
+            ('-', _) if is_exponent => out.push('⁻'),
+            (_, Some(digit)) if is_exponent => out.push(RAISED[digit as usize]),
+            // a root stays as it is written: there is no fraction above the line
+            ('(', _) if is_exponent => out.push_str("^("),
+            _ => out.push(c),
+        }
+        is_exponent = c == '^' || is_exponent && (c.is_ascii_digit() || c == '-');
+    }
+    out
+}
+
+/// A name in a picture, its index below the line.
+pub(super) fn name_in_picture(name: &str, looks: &Looks) -> String {
+    match letter_and_index(name, looks.get(name)) {
+        Some((letter, index)) if index.is_empty() => letter,
+        Some((letter, index)) => format!("{letter}{BELOW}{index}{BACK}"),
+        None => name.to_owned(),
+    }
+}
+
 /// A name along an axis, with the unit of what it means where that is known.
 pub(super) fn axis(name: &str, unit: Option<&str>) -> String {
-    let name = in_letters(name);
-    unit.filter(|unit| !unit.is_empty()).map_or(name.clone(), |unit| format!("{name}, {unit}"))
+    axis_in(name, unit, &Looks::default())
+}
+
+/// The same with the looks that a file gives to its names.
+pub(super) fn axis_in(name: &str, unit: Option<&str>, looks: &Looks) -> String {
+    let name = name_in_picture(name, looks);
+    let unit = unit.filter(|unit| !unit.is_empty());
+    unit.map_or(name.clone(), |unit| format!("{name}, {}", unit_in_print(unit)))
 }
 
 /// A number along an axis of some span.
@@ -75,6 +111,21 @@ mod tests {
             assert_eq!(labels.len(), 10, "{labels:?}");
         }
         assert_eq!(room((-10_000.0, 10_000.0), |v| number(v, 20_000.0)), 30 + 42);
+    }
+
+    #[test]
+    fn units_are_set_as_people_write_them() {
+        for (unit, expected) in [
+            ("kg*m^2", "kg·m²"),
+            ("1/s", "1/s"),
+            ("m/s^-12", "m/s⁻¹²"),
+            ("m^(1/2)*s^3", "m^(1/2)·s³"),
+            ("rad", "rad"),
+        ] {
+            assert_eq!(unit_in_print(unit), expected);
+        }
+        assert_eq!(axis("Fyf", Some("kg*m/s^2")), format!("F{BELOW}yf{BACK}, kg·m/s²"));
+        assert_eq!(axis("mass", None), "mass");
     }
 
     #[test]

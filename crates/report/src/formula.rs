@@ -103,19 +103,10 @@ fn shown(formula: Formula) -> Option<String> {
     (formula.depth() <= DEEPEST).then(|| mathml_in_pieces(&formula))
 }
 
-/// Several statements in one line, as conditions on a set of states.
+/// Several statements, as conditions on a set of states: each a formula of its own, so that a line may break behind each comma.
 pub fn conditions_mathml(conditions: &[String], looks: &Looks) -> Option<String> {
-    let mut row = Vec::new();
-    for condition in conditions {
-        if !row.is_empty() {
-            row.push(Formula::Sign(FormulaSign::Comma));
-        }
-        match statement_formula(condition, looks)? {
-            Formula::Row(parts) => row.extend(parts),
-            other => row.push(other),
-        }
-    }
-    shown(Formula::Row(row))
+    let each = conditions.iter().map(|condition| shown(statement_formula(condition, looks)?));
+    each.collect::<Option<Vec<String>>>().map(|each| each.join(", "))
 }
 
 /// A vector field as a differential operator: a sum of rates before partial derivatives. Each part has a sign, what stands before the

@@ -1,8 +1,14 @@
 //! Plots as SVG, to be put into a page.
 
-use crate::axis::{axis, number, power, room};
-use crate::drawing::{Canvas, Cells, Hover, INK, MESH, escaped, svg};
-use palmistry_workbench::tradeoff::{Growth, Map, RoundingStudy, Slope};
+mod counts;
+
+pub(crate) use counts::{growth, rounding};
+
+use crate::axis::{axis, axis_in, number, power, room};
+use crate::drawing::{Canvas, Cells, Hover, INK, MESH, escaped, on_the_line};
+use palmistry_lang::Looks;
+use palmistry_math::expression::notation::in_letters;
+use palmistry_workbench::tradeoff::{Map, Slope};
 use plotters::prelude::{
     ChartBuilder, Circle, Color, IntoFont, IntoLogRange, LineSeries, RGBColor, Rectangle, Text, WHITE,
 };
@@ -18,7 +24,7 @@ const SCALE: [(u8, u8, u8); 8] = [
     (253, 166, 104),
     (252, 222, 156),
 ];
-/// Where a pole is: nearly white, on light and on dark pages.
+/// Where a singularity is: nearly white, on light and on dark pages.
 const POLE: RGBColor = RGBColor(250, 250, 250);
 /// Where a standard deviation is infinite: no colour of the scale, and no pole.
 const INFINITE: RGBColor = RGBColor(0, 150, 136);
@@ -26,8 +32,6 @@ const INFINITE: RGBColor = RGBColor(0, 150, 136);
 const INFINITE_TEXT: &str = "infinite: unobservable, or not distinguishable from it";
 /// So many decades above the smallest value have colours of their own.
 const DECADES: f64 = 6.0;
-/// What is counted or measured.
-const BAR: RGBColor = RGBColor(0, 114, 178);
 const RED: RGBColor = RGBColor(200, 40, 60);
 
 /// The steps of the colour scale: levels of the logarithm, two a decade.
@@ -52,7 +56,7 @@ const NO_DIFFERENCE: f64 = 1e-6;
 /// What is said in the place of a picture without finite values.
 fn nothing(infinite: usize, points: usize) -> String {
     match infinite {
-        0 => "nothing to draw: there are poles everywhere".to_owned(),
+        0 => "nothing to draw: it is singular everywhere".to_owned(),
         count if count == points => {
             "unobservable at all points: the standard deviation is infinite, as far as doubles show"
                 .to_owned()
@@ -66,12 +70,16 @@ fn nothing(infinite: usize, points: usize) -> String {
 /// The standard deviation of an unknown over its prior one, over two coordinates: light where it is small and the unknown is observable
 /// well, dark where it is large, green where it is infinite, white at poles. Under the pointer stand the values between which a cell's
 /// lies. `units` are those of the two coordinates.
-pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
+pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2], looks: &Looks) -> String {
     let all = || map.deviations.iter().flatten().copied();
     let found: Vec<f64> = all().filter(|v| v.is_finite() && *v > 0.0).map(f64::log10).collect();
     let infinite = all().filter(|value| value.is_infinite()).count();
     if found.is_empty() {
-        return format!("<p>{}: {}</p>", escaped(title), nothing(infinite, map.deviations.len()));
+        return format!(
+            "<p>{}: {}</p>",
+            escaped(&on_the_line(title)),
+            nothing(infinite, map.deviations.len())
+        );
     }
     let lowest = found.iter().copied().fold(f64::INFINITY, f64::min);
     let largest = found.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -94,14 +102,16 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
     by_colour.push((POLE, "a singularity".to_owned()));
     by_colour.push((INFINITE, INFINITE_TEXT.to_owned()));
     let beside: Vec<(RGBColor, &str)> =
-        [(INFINITE, "infinite", infinite > 0), (POLE, "pole", map.deviations.contains(&None))]
+        [(INFINITE, "infinite", infinite > 0), (POLE, "singularity", map.deviations.contains(&None))]
             .into_iter()
             .filter_map(|(colour, name, is_there)| is_there.then_some((colour, name)))
             .collect();
     let canvas = Canvas { size: (420, 330), title, by_colour: &by_colour, is_crisp: true };
     canvas.draw(|area, extras| {
         let scale_room = room((lowest, lowest + span), |v| power(v, span));
-        let (plot, legend) = area.split_horizontally(420 - scale_room.max(60) as i32 - 20);
+        // the longest word below the scale needs more room than most of its numbers
+        let words_room = if beside.iter().any(|(colour, _)| *colour == POLE) { 78 } else { 60 };
+        let (plot, legend) = area.split_horizontally(420 - scale_room.max(words_room) as i32 - 20);
         let spans = [map.x.high - map.x.low, map.y.high - map.y.low];
         let mut chart = ChartBuilder::on(&plot)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
@@ -131,8 +141,8 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
             .x_label_formatter(&|v| number(*v, spans[0]))
             .y_label_formatter(&|v| number(*v, spans[1]))
             .label_style(("sans-serif", 12).into_font().color(&INK))
-            .x_desc(axis(&map.x.name, units[0]))
-            .y_desc(axis(&map.y.name, units[1]))
+            .x_desc(axis_in(&map.x.name, units[0], looks))
+            .y_desc(axis_in(&map.y.name, units[1], looks))
             .axis_desc_style(("sans-serif", 13))
             .draw()?;
         let words = ("sans-serif", 12).into_font().color(&INK);
@@ -299,12 +309,12 @@ fn columns(slope: &Slope, place: impl Fn(f64) -> i32, [top, bottom]: [i32; 2]) -
             let number =
                 |value: &f64| if value.is_finite() { format!("{value:.1e}") } else { "infinite".to_owned() };
             // those of one value together: most are at 1, or infinite
-            let mut groups: Vec<(String, Vec<&str>)> = Vec::new();
+            let mut groups: Vec<(String, Vec<String>)> = Vec::new();
             for (name, value) in slope.names.iter().zip(values) {
                 let value = number(value);
                 match groups.iter_mut().find(|(known, _)| *known == value) {
-                    Some((_, names)) => names.push(name),
-                    None => groups.push((value, vec![name])),
+                    Some((_, names)) => names.push(in_letters(name)),
+                    None => groups.push((value, vec![in_letters(name)])),
                 }
             }
             // the most that share a value come last, and need no names
@@ -342,82 +352,6 @@ fn columns(slope: &Slope, place: impl Fn(f64) -> i32, [top, bottom]: [i32; 2]) -
     stripes
 }
 
-/// The errors of a sum in few digits, as a histogram, with the error of the printed number as a line.
-pub(crate) fn rounding(study: &RoundingStudy, printed_error: f64, title: &str) -> String {
-    let reach = study.errors.iter().fold(printed_error.abs(), |a, e| a.max(e.abs())) * 1.1;
-    const BINS: usize = 41;
-    let mut bins = [0u32; BINS];
-    for error in &study.errors {
-        let place = ((error + reach) / (2.0 * reach) * BINS as f64) as usize;
-        bins[place.min(BINS - 1)] += 1;
-    }
-    let tallest = f64::from(bins.iter().copied().max().unwrap_or(1)) * 1.1;
-    svg((420, 260), title, |area| {
-        let mut chart = ChartBuilder::on(area)
-            .caption(title, ("sans-serif", 14).into_font().color(&INK))
-            .margin(8)
-            .x_label_area_size(38)
-            .y_label_area_size(50)
-            .build_cartesian_2d(-reach..reach, 0.0..tallest)?;
-        chart
-            .configure_mesh()
-            .disable_mesh()
-            .x_labels(5)
-            .label_style(("sans-serif", 12).into_font().color(&INK))
-            .x_label_formatter(&|v| format!("{v:.1e}"))
-            .x_desc("error of the sum")
-            .y_desc("orders")
-            .axis_desc_style(("sans-serif", 12))
-            .draw()?;
-        let width = 2.0 * reach / BINS as f64;
-        chart.draw_series(bins.iter().enumerate().map(|(i, count)| {
-            let left = -reach + width * i as f64;
-            Rectangle::new([(left, 0.0), (left + width, f64::from(*count))], BAR.filled())
-        }))?;
-        let line = [(printed_error, 0.0), (printed_error, tallest)];
-        chart.draw_series(LineSeries::new(line, RED.stroke_width(2)))?;
-        Ok(())
-    })
-}
-
-/// Operations against order, both axes logarithmic, beside a line of slope three.
-pub(crate) fn growth(growth: &[Growth], title: &str) -> String {
-    let points: Vec<(f64, f64)> = growth.iter().map(|g| (g.order as f64, g.operations as f64)).collect();
-    let Some(last) = points.last().copied() else {
-        return String::new();
-    };
-    // a derivative may cost less than the one before it
-    let sizes = || points.iter().map(|point| point.1.max(1.0));
-    let (least, most) = (sizes().fold(f64::INFINITY, f64::min) / 2.0, sizes().fold(1.0, f64::max) * 4.0);
-    svg((420, 300), title, |area| {
-        let mut chart = ChartBuilder::on(area)
-            .caption(title, ("sans-serif", 14).into_font().color(&INK))
-            .margin(8)
-            .x_label_area_size(38)
-            .y_label_area_size(room((least, most), |v| format!("{v:.0}")))
-            .build_cartesian_2d((1.0..last.0 * 1.1).log_scale(), (least..most).log_scale())?;
-        chart
-            .configure_mesh()
-            .light_line_style(WHITE)
-            .bold_line_style(MESH)
-            .label_style(("sans-serif", 12).into_font().color(&INK))
-            .x_labels(6)
-            .y_labels(6)
-            .x_label_formatter(&|v| format!("{v:.0}"))
-            .y_label_formatter(&|v| format!("{v:.0}"))
-            .x_desc("order of the Lie derivative")
-            .y_desc("operations")
-            .axis_desc_style(("sans-serif", 12))
-            .draw()?;
-        let cubic =
-            points.iter().map(|(k, _)| (*k, last.1 * (k / last.0).powi(3))).filter(|(_, v)| *v >= least);
-        chart.draw_series(LineSeries::new(cubic, RGBColor(150, 155, 162).stroke_width(1)))?;
-        chart.draw_series(LineSeries::new(points.iter().copied(), BAR.stroke_width(2)))?;
-        chart.draw_series(points.iter().map(|point| Circle::new(*point, 3, BAR.filled())))?;
-        Ok(())
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -450,7 +384,12 @@ mod tests {
         let axis = |name: &str| CoordinateRange { name: name.to_owned(), low: -10_000.0, high: 10_000.0 };
         let of = |deviations: Vec<f64>| {
             let deviations = deviations.into_iter().map(Some).collect();
-            super::map(&of_cells([axis("x"), axis("y")], 2, deviations), "a map", [None; 2])
+            super::map(
+                &of_cells([axis("x"), axis("y")], 2, deviations),
+                "a map",
+                [None; 2],
+                &Looks::default(),
+            )
         };
         let flat = of(vec![0.5, 0.5 + 1e-14, 0.5, 0.5 - 1e-14]);
         assert!(flat.contains(">everywhere<") && flat.contains(">5.000e-1<"), "{flat}");
@@ -487,7 +426,8 @@ mod tests {
             None,
         ];
         let all: Vec<Option<f64>> = row.into_iter().chain(row).collect();
-        let found = super::map(&of_cells([axis("x"), axis("y")], 8, all), "a map", [None; 2]);
+        let found =
+            super::map(&of_cells([axis("x"), axis("y")], 8, all), "a map", [None; 2], &Looks::default());
         let cell = |title: &str, x: usize| {
             let path = found.split("<path stroke=").find(|path| path.contains(&format!("<title>{title}")));
             assert!(path.is_some_and(|path| path.contains(&format!("d=\"m{x} 0h1"))), "{title}: {found}");
@@ -496,7 +436,7 @@ mod tests {
         cell("above", 1);
         cell(INFINITE_TEXT, 2);
         cell("a singularity", 3);
-        for word in [">well<", ">poorly<", ">infinite<", ">pole<"] {
+        for word in [">well<", ">poorly<", ">infinite<", ">singularity<"] {
             assert!(found.contains(word), "{word}: {found}");
         }
         let RGBColor(r, g, b) = shade(SHADES - 1);
@@ -505,6 +445,7 @@ mod tests {
             &of_cells([axis("x"), axis("y")], 2, vec![Some(f64::INFINITY); 4]),
             "a map",
             [None; 2],
+            &Looks::default(),
         );
         assert!(only.contains("unobservable at all points"), "{only}");
     }

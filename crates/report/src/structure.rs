@@ -2,9 +2,9 @@
 //! complex systems, PNAS 110 (2013) 2460-2465). An arrow from a state leads to those that stand in its rate.
 
 use crate::drawing::escaped;
-use palmistry_lang::{Role, System};
+use palmistry_lang::{Role, System, UnknownKind};
 use palmistry_math::expression::Symbol;
-use palmistry_math::expression::notation::in_letters;
+use palmistry_math::expression::notation::letter_and_index;
 use palmistry_rank::observability::Observability;
 use palmistry_rank::sweep::BranchAnswer;
 use std::collections::BTreeSet;
@@ -24,11 +24,65 @@ const MOST_NODES: usize = 24;
 /// Pixels.
 const RADIUS: f64 = 17.0;
 const MARGIN: f64 = 26.0;
+/// The size of letters in pixels, and how wide one is at most.
+const LETTERS: [f64; 2] = [10.0, 14.0];
+const WIDTH_OF_A_LETTER: f64 = 0.58;
 
-/// A node: a state, or a signal that drives states.
+/// A node: a state, a signal that drives states, or, beside a single state, an unknown constant or an input.
 struct Node {
-    symbol: Symbol,
+    /// None of an input, whose vector field has no symbol.
+    symbol: Option<Symbol>,
+    name: String,
     is_signal: bool,
+}
+
+impl Node {
+    /// The letter and the index by which it is shown.
+    fn label(&self, system: &System) -> (String, String) {
+        letter_and_index(&self.name, system.looks.get(&self.name))
+            .unwrap_or_else(|| (self.name.clone(), String::new()))
+    }
+
+    /// How many letters wide its label is; those of an index are smaller.
+    fn letters(&self, system: &System) -> f64 {
+        let (letter, index) = self.label(system);
+        letter.chars().count() as f64 + 0.8 * index.chars().count() as f64
+    }
+
+    /// The size of its letters: as large as a circle has room for, and never too small to be read.
+    fn size(&self, system: &System) -> f64 {
+        (1.7 * RADIUS / (WIDTH_OF_A_LETTER * self.letters(system).max(1.0))).clamp(LETTERS[0], LETTERS[1])
+    }
+
+    /// Pixels that its label takes.
+    fn width(&self, system: &System) -> f64 {
+        self.letters(system) * self.size(system) * WIDTH_OF_A_LETTER
+    }
+}
+
+/// The nodes of a system: states that move, and signals; of a single state its unknown constants and inputs too, so that there is something to see.
+fn nodes_of(system: &System, ground: DiagramGround) -> Vec<Node> {
+    let node = |symbol: Symbol, is_signal: bool| Node {
+        symbol: Some(symbol),
+        name: system.symbol_name(symbol).to_owned(),
+        is_signal,
+    };
+    let of_first = |symbol: &Symbol| !system.symbol_name(*symbol).contains(['@', '\'']);
+    let moving: BTreeSet<Symbol> = rates(system).map(|(symbol, _)| symbol).collect();
+    let signals: BTreeSet<Symbol> =
+        system.signal_chains().iter().filter_map(|chain| chain.first().copied()).collect();
+    let own = || system.states.iter().copied().filter(of_first);
+    let states = own().filter(|symbol| moving.contains(symbol) && !signals.contains(symbol));
+    let mut nodes: Vec<Node> = states.map(|symbol| node(symbol, false)).collect();
+    if nodes.len() == 1 && ground == DiagramGround::Alone {
+        let constants = own().filter(|symbol| system.unknown_kind(*symbol) == Some(UnknownKind::Parameter));
+        nodes.extend(constants.map(|symbol| node(symbol, false)));
+        let inputs = system.fields.iter().filter(|field| field.role == Role::Input);
+        let inputs = inputs.filter(|field| !field.name.ends_with('\''));
+        nodes.extend(inputs.map(|field| Node { symbol: None, name: field.name.clone(), is_signal: true }));
+    }
+    nodes.extend(own().filter(|symbol| signals.contains(symbol)).map(|symbol| node(symbol, true)));
+    nodes
 }
 
 /// The diagram as SVG, with what was found of the unknowns. None where there are no states that move, or too many of them.
@@ -37,32 +91,36 @@ pub fn structure_picture(
     found: Option<&BranchAnswer>,
     ground: DiagramGround,
 ) -> Option<String> {
-    let of_first = |symbol: &Symbol| !system.symbol_name(*symbol).contains(['@', '\'']);
-    let moving: BTreeSet<Symbol> = rates(system).map(|(symbol, _)| symbol).collect();
-    let signals: BTreeSet<Symbol> =
-        system.signal_chains().iter().filter_map(|chain| chain.first().copied()).collect();
-    let is_one = |symbol: &Symbol| moving.contains(symbol) || signals.contains(symbol);
-    let states = system.states.iter().copied().filter(|symbol| is_one(symbol) && of_first(symbol));
-    let mut nodes: Vec<Node> =
-        states.map(|symbol| Node { symbol, is_signal: signals.contains(&symbol) }).collect();
-    nodes.sort_by_key(|node| node.is_signal);
-    if !(2..=MOST_NODES).contains(&nodes.iter().filter(|node| !node.is_signal).count())
-        || nodes.len() > MOST_NODES
-    {
+    let nodes = nodes_of(system, ground);
+    // beside the mathematics of a page one state alone shows nothing
+    let least = if ground == DiagramGround::Page { 2 } else { 1 };
+    if nodes.iter().filter(|node| !node.is_signal).count() < least || nodes.len() > MOST_NODES {
         return None;
     }
-    let place = |symbol: Symbol| nodes.iter().position(|node| node.symbol == symbol);
+    let place = |symbol: Symbol| nodes.iter().position(|node| node.symbol == Some(symbol));
     let mut arrows: BTreeSet<(usize, usize)> = BTreeSet::new();
     for (symbol, rate) in rates(system) {
         let Some(from) = place(symbol).filter(|from| !nodes[*from].is_signal) else { continue };
         let mentioned = system.graph.symbols_of([rate]);
         arrows.extend(mentioned.into_iter().filter_map(place).filter(|to| *to != from).map(|to| (from, to)));
     }
+    for field in system.fields.iter().filter(|field| field.role == Role::Input) {
+        let Some(to) = nodes.iter().position(|node| node.symbol.is_none() && node.name == field.name) else {
+            continue;
+        };
+        arrows.extend(field.components.iter().filter_map(|(symbol, _)| Some((place(*symbol)?, to))));
+    }
     let measured: BTreeSet<Symbol> =
         system.graph.symbols_of(system.outputs.iter().map(|(_, node)| *node)).into_iter().collect();
     let order = ordered(nodes.len(), &arrows);
-    let circle = (nodes.len() as f64 * 3.0 * RADIUS / std::f64::consts::TAU).max(2.1 * RADIUS);
-    let size = 2.0 * (circle + RADIUS + MARGIN);
+    // names that are wider than a circle need room beside each other, and at the edges
+    let widest = nodes.iter().map(|node| node.width(system)).fold(0.0, f64::max);
+    let apart = (3.0 * RADIUS).max(widest + 10.0);
+    let circle = match nodes.len() {
+        1 => 0.0,
+        several => (several as f64 * apart / std::f64::consts::TAU).max(0.7 * apart),
+    };
+    let size = 2.0 * (circle + RADIUS + MARGIN.max(widest / 2.0 - RADIUS + 4.0));
     let at: Vec<(f64, f64)> = (0..nodes.len())
         .map(|node| {
             let turn = order[node] as f64 / nodes.len() as f64 * std::f64::consts::TAU;
@@ -88,9 +146,8 @@ pub fn structure_picture(
         "<path d=\"{lines}\" fill=\"none\" stroke=\"#8a93a0\" stroke-width=\"1.3\"/><path d=\"{heads}\" fill=\"#8a93a0\"/>"
     );
     for (node, (x, y)) in nodes.iter().zip(&at) {
-        let name = system.symbol_name(node.symbol);
-        let fill = if node.is_signal { "#7c5cbf" } else { colour(found, name) };
-        if measured.contains(&node.symbol) {
+        let fill = if node.is_signal { "#7c5cbf" } else { colour(found, &node.name) };
+        if node.symbol.is_some_and(|symbol| measured.contains(&symbol)) {
             let outer = RADIUS + 4.0;
             let _ = write!(
                 out,
@@ -112,18 +169,20 @@ pub fn structure_picture(
                 "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{RADIUS}\" fill=\"{fill}\" fill-opacity=\".22\" stroke=\"{fill}\"/>"
             ),
         };
-        let letters = in_letters(name);
-        let short: String = match letters.chars().count() {
-            0..=9 => letters.clone(),
-            _ => letters.chars().take(8).chain(['\u{2026}']).collect(),
+        let (letter, index) = node.label(system);
+        let font = node.size(system);
+        let below = match index.is_empty() {
+            true => String::new(),
+            false => {
+                format!("<tspan dy=\"{:.1}\" font-size=\"80%\">{}</tspan>", 0.25 * font, escaped(&index))
+            }
         };
-        let font = (58.0 / short.chars().count().max(1) as f64).clamp(6.5, 14.0);
         let _ = write!(
             out,
-            "<text x=\"{x:.1}\" y=\"{:.1}\" font-size=\"{font:.1}\" fill=\"currentColor\">{}<title>{}</title></text>",
+            "<text x=\"{x:.1}\" y=\"{:.1}\" font-size=\"{font:.1}\" fill=\"currentColor\">{}{below}<title>{}</title></text>",
             y + 0.35 * font,
-            escaped(&short),
-            escaped(name)
+            escaped(&letter),
+            escaped(&node.name)
         );
     }
     out.push_str("</svg>");
@@ -238,6 +297,19 @@ mod tests {
         );
     }
 
+    /// A name of several letters is a letter with an index; a word has its room.
+    #[test]
+    fn names_are_symbols() {
+        let picture = drawn(
+            "system \"s\" state Fyf, biomass_concentration drift f Fyf' = biomass_concentration output Fyf",
+        )
+        .unwrap();
+        assert!(picture.contains(">F<tspan dy=") && picture.contains(">yf</tspan>"), "{picture}");
+        assert!(picture.contains(">biomass<tspan") && !picture.contains('\u{2026}'), "{picture}");
+        let size = picture.split("viewBox=\"0 0 ").nth(1).unwrap().split(' ').next().unwrap();
+        assert!(size.parse::<f64>().unwrap() > 250.0, "{size}");
+    }
+
     /// Of one state, of states that nothing moves and of more than can be made out there is none.
     #[test]
     fn what_has_no_diagram() {
@@ -245,6 +317,17 @@ mod tests {
         let many =
             "system \"many\" state x[1..25] drift f x[i]' = x[i + 1] for i in 1..24 x[25]' = 0 output x[1]";
         assert_eq!(drawn(many), None);
+        // in a file of its own it has its constants and inputs beside it
+        let one: System = "system \"one\" state x param k unknown drift f x' = -k*x input g x' = 1 output x"
+            .parse()
+            .unwrap();
+        let picture = structure_picture(&one, None, DiagramGround::Alone).unwrap();
+        assert_eq!(
+            (picture.matches("r=\"17\"").count(), picture.matches("<rect").count()),
+            (2, 2),
+            "{picture}"
+        );
+        assert_eq!(picture.matches('Q').count(), 2, "{picture}");
         let rests: System = "system \"rests\" state x, y output x".parse().unwrap();
         assert_eq!(structure_picture(&rests, None, DiagramGround::Page), None);
     }

@@ -198,5 +198,5 @@ fn integration_has_no_bars() {
     let page =
         palmistry::report::observe_page(&palmistry::report::Observed::of(&experiment, &answers(&experiment)));
     assert!(!page.contains("very update converged"), "a method without updates has none that converged");
-    assert!(page.contains("nothing that it believes is compared"));
+    assert!(page.contains("its estimates are not tested against the measurements"));
 }

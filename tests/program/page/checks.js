@@ -28,7 +28,7 @@
     found.scroll = document.documentElement.scrollWidth;
     const scrolls = element => {
       for (let at = element; at && at !== document.documentElement; at = at.parentElement) {
-        if (['auto', 'scroll', 'hidden'].includes(getComputedStyle(at).overflowX) && at !== document.body) return true;
+        if (['auto', 'scroll'].includes(getComputedStyle(at).overflowX) && at !== document.body) return true;
       }
       return false;
     };
@@ -36,6 +36,25 @@
       const box = element.getBoundingClientRect();
       return box.width > 0 && box.right > innerWidth + 1 && !scrolls(element);
     }).slice(0, 5).map(describe);
+
+    // nothing is cut: what hides its overflow has none, neither a text with dots at its end nor a label at the edge of a picture
+    const hides = value => ['hidden', 'clip'].includes(value);
+    found.cut = [...document.body.querySelectorAll('*')].filter(element => {
+      if (element.closest('svg') || !element.clientWidth || !element.textContent.trim()) return false;
+      const style = getComputedStyle(element);
+      return hides(style.overflowX) && element.scrollWidth > element.clientWidth + 1
+        || hides(style.overflowY) && element.scrollHeight > element.clientHeight + 4
+        || style.textOverflow !== 'clip' && element.scrollWidth > element.clientWidth;
+    }).concat([...document.querySelectorAll('svg text')].filter(text => {
+      const [own, around] = [text.getBoundingClientRect(), text.ownerSVGElement.getBoundingClientRect()];
+      return own.width > 0 && (own.left < around.left - 1 || own.right > around.right + 1 || own.bottom > around.bottom + 2);
+    })).slice(0, 5).map(describe);
+    // what scrolls by itself shows that there is more: its shadows scroll with it
+    found.scrolling = [...document.body.querySelectorAll('*')].filter(element =>
+      element.clientWidth && ['auto', 'scroll'].includes(getComputedStyle(element).overflowX) && element.scrollWidth > element.clientWidth + 1);
+    found.unmarked = found.scrolling
+      .filter(element => !getComputedStyle(element).backgroundAttachment.includes('local')).slice(0, 5).map(describe);
+    found.scrolling = found.scrolling.map(describe);
 
     // labels of pictures in pixels of the screen
     found.pictures = document.querySelectorAll('svg').length;

@@ -11,6 +11,7 @@ use palmistry::paper::{Findings, Paper, VerifyOptions, verify};
 use palmistry::report::{Observed, observe_page, page};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 /// A file with a claim of every kind, a map, lines, sets; ids and a title that mean something in HTML and in addresses.
 const PENDULUM: &str = r#"# a pendulum & its <length>
@@ -27,6 +28,7 @@ sample
   phi    in [-1, 1]
   omega0 in [1, 2]
 set "at rest": omega0 = 0
+set "with many conditions": omega0 = 0, phi = 0, g = 1, k_1 = 1, k1 = 1
 map "plane": phi in [-1, 1], omega0 in [0, 2] at {g = 9} order 1 "nothing happens"
 line "to rest": omega0 to 0
 line "away": omega0 to infinity from {phi = 1/2}
@@ -38,7 +40,7 @@ claim 2: (k1 + omega0 + g + k_1)^2 = k1^2 + omega0^2 + g^2 + k_1^2 + 2*k1*omega0
 claim text.same expect refuted: k_1 = k1
 claim wide: det([long/(1 + long^2), 1, 0; 0, long, k1/(g*(omega0^2 + 1)^2); 1, 0, 1])
   = long^2/(1 + long^2) + k1/(g*(omega0^2 + 1)^2)
-claim positive: 0 < g*k1 where g > 0, k1 > 0
+claim positive.wherever_the_stiffness_and.the_acceleration_are: 0 < g*k1 where g > 0, k1 > 0
 erratum 3: printed g + g = 3*g  corrected g + g = 2*g "twice & not thrice"
 definition 4: "a word that is defined"
 undecided 5: "nobody knows < why"
@@ -143,6 +145,7 @@ fn a_reader_finds_their_way() {
             assert_eq!(seen["inner"], width, "{place}");
             assert!(seen["scroll"].as_u64() <= Some(u64::from(width)), "{place}");
             assert_eq!(seen["wide"], json!([]), "{place}");
+            assert_eq!((&seen["cut"], &seen["unmarked"]), (&json!([]), &json!([])), "{place}");
             assert_eq!(seen["untitled"], json!([]), "{place}");
             assert!(seen["pictures"].as_u64() >= Some(3), "{place}");
             assert!(seen["label"].as_f64() >= Some(10.0), "{place}");
@@ -200,11 +203,56 @@ fn the_page_of_a_scene_fits_too() {
         assert_eq!((&seen["lost"], &seen["outside"]), (&json!([]), &json!([])), "{place}");
         assert!(seen["scroll"].as_u64() <= Some(u64::from(width)), "{place}");
         assert_eq!((&seen["wide"], &seen["untitled"]), (&json!([]), &json!([])), "{place}");
+        assert_eq!((&seen["cut"], &seen["unmarked"]), (&json!([]), &json!([])), "{place}");
         // twelve frames and the outline, three states with their errors, sensor errors, two basins
         assert_eq!(seen["pictures"], 12 + 1 + 6 + 3 + 2, "{place}");
         assert!(seen["label"].as_f64() >= Some(10.0), "{place}");
         assert!(seen["contrast"].as_f64() >= Some(4.5), "{place}");
         assert!(seen.get("form").is_none(), "{place}");
+    }
+}
+
+/// Papers whose formulas are wide and whose ids are long: on no screen is something cut.
+#[test]
+fn nothing_of_a_paper_is_cut() {
+    let Some(browser) = browser() else { return };
+    for paper in ["proofs/koteich2015", "examples/papers/tyre", "examples/papers/bioreactor"] {
+        let options = VerifyOptions { timed: false, ..VerifyOptions::default() };
+        let page = page(&verify(&Paper::read(Path::new(paper)).unwrap(), &options).unwrap());
+        // marks of indices that have become none
+        assert!(!page.contains(['\u{e000}', '\u{e001}']), "{paper}");
+        for (width, dark) in [(400, false), (1400, true)] {
+            let seen = look(&browser, &page, &[], &Look { width, dark });
+            let place = format!("{paper}, {width} pixels: {seen:#}");
+            assert!(seen.get("error").is_none(), "{place}");
+            for none in ["cut", "unmarked", "wide", "untitled", "lost"] {
+                assert_eq!(seen[none], json!([]), "{none} of {place}");
+            }
+            assert!(seen["scroll"].as_u64() <= Some(u64::from(width)), "{place}");
+            assert!(
+                seen["label"].as_f64() >= Some(10.0) && seen["contrast"].as_f64() >= Some(4.5),
+                "{place}"
+            );
+            let of_sets = |text: &Value| text.as_str().unwrap().starts_with("SPAN  f");
+            assert!(!seen["scrolling"].as_array().unwrap().iter().any(of_sets) || width < 1400, "{place}");
+        }
+    }
+}
+
+/// A file without claims says so in a sentence, and has no list of none.
+#[test]
+fn a_file_without_claims_is_no_list_of_none() {
+    let folder = folder();
+    write(
+        &folder,
+        "one.proof",
+        "system \"A decay\" state x, Fyf param k unknown drift f x' = -k*x Fyf' = x output x",
+    );
+    let options = VerifyOptions { timed: false, ..VerifyOptions::default() };
+    let page = page(&verify(&Paper::read(folder.path()).unwrap(), &options).unwrap());
+    assert!(page.contains("Nothing is claimed here"), "{page}");
+    for part in ["0 claims", "as expected", "No errata", "id=claims", "#claims"] {
+        assert!(!page.contains(part), "{part}");
     }
 }
 
@@ -232,7 +280,20 @@ fn filters(seen: &Value, place: &str) {
     assert_eq!(searches["twice & not"], json!(["3"]), "{place}");
     assert_eq!(searches["k_1"], json!(["2", "text.same"]), "{place}");
     assert_eq!(searches["no such thing"], json!([]), "{place}");
-    let sorted = json!(["1", "1", "1.b", "2", "3", "4", "5", "10", "ä", "positive", "text.same", "wide"]);
+    let sorted = json!([
+        "1",
+        "1",
+        "1.b",
+        "2",
+        "3",
+        "4",
+        "5",
+        "10",
+        "ä",
+        "positive.wherever_the_stiffness_and.the_acceleration_are",
+        "text.same",
+        "wide"
+    ]);
     assert_eq!(seen["sorted"], sorted, "{place}");
     assert_eq!(seen["again"], true, "{place}");
     assert_eq!((&seen["hidden"], &seen["revealed"]), (&json!(true), &json!(true)), "{place}");

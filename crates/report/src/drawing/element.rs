@@ -1,6 +1,7 @@
 //! What plotters draws, element by element: how each looks, and its part of a path.
 
 use super::track::{Stretch, simplified};
+use super::{BACK, BELOW};
 
 /// Left, top, right, bottom, in pixels.
 pub(super) type Corners = [i32; 4];
@@ -17,6 +18,21 @@ pub(super) struct Shape {
 pub(super) enum Part {
     Words(String),
     Path(Stretch),
+}
+
+/// A text whose indices stand below the line; what follows one is back on it.
+fn with_indices(words: &str, size: f64) -> String {
+    let mut parts = words.split(BELOW);
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    let down = (0.25 * size).round();
+    for part in parts {
+        let (index, rest) = part.split_once(BACK).unwrap_or((part, ""));
+        out.push_str(&format!("<tspan dy=\"{down}\" font-size=\"80%\">{index}</tspan>"));
+        if !rest.is_empty() {
+            out.push_str(&format!("<tspan dy=\"-{down}\">{rest}</tspan>"));
+        }
+    }
+    out
 }
 
 fn around(points: &[(i32, i32)]) -> Corners {
@@ -193,7 +209,7 @@ impl Element<'_> {
             _ => -0.25,
         };
         let turn = self.attribute("transform").split(['(', ',']).nth(1).unwrap_or_default();
-        let words = self.words;
+        let words = with_indices(self.words, size);
         let (down, kind) = (
             (down * size).round() as i32,
             Kind::Words { size: size as i32, anchor: self.attribute("text-anchor").to_owned() },
@@ -207,5 +223,23 @@ impl Element<'_> {
             }
         };
         (look(kind, self.attribute("fill")), Part::Words(placed))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn indices_stand_below_the_line() {
+        assert_eq!(with_indices("distance, m", 12.0), "distance, m");
+        assert_eq!(
+            with_indices(&format!("v{BELOW}y{BACK}, m/s"), 12.0),
+            "v<tspan dy=\"3\" font-size=\"80%\">y</tspan><tspan dy=\"-3\">, m/s</tspan>"
+        );
+        assert_eq!(
+            with_indices(&format!("of {BELOW}y{BACK}"), 12.0),
+            "of <tspan dy=\"3\" font-size=\"80%\">y</tspan>"
+        );
     }
 }

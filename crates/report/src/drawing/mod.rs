@@ -15,6 +15,16 @@ use std::fmt::Write;
 pub(super) const STANDALONE: &str =
     " xmlns=\"http://www.w3.org/2000/svg\" color=\"#282c34\" font-family=\"system-ui,sans-serif\"";
 
+/// Behind this mark the letters of a text stand below the line, as an index does, up to [`BACK`]: plotters knows plain texts alone.
+pub(super) const BELOW: char = '\u{e000}';
+/// Where an index ends.
+pub(super) const BACK: char = '\u{e001}';
+
+/// A text with its indices on the line, for places that hold plain texts alone.
+pub(super) fn on_the_line(text: &str) -> String {
+    text.replace(BELOW, "_").replace(BACK, "")
+}
+
 /// What is drawn on.
 pub(super) type Drawing<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
@@ -91,7 +101,7 @@ impl Canvas<'_> {
         let mut out = format!(
             "<svg role=\"img\" aria-label=\"{}\"{STANDALONE} viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
              height=\"{height}\"{}>",
-            escaped(self.title),
+            escaped(&on_the_line(self.title)),
             if self.is_crisp { " shape-rendering=\"crispEdges\"" } else { "" }
         );
         if let Some(cells) = cells {

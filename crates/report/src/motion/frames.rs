@@ -179,7 +179,7 @@ pub(super) fn recovered_outline(shape: Option<&Shape>, outline: &TouchTrack) -> 
         }
         if !outline.instants.iter().all(|instant| instant.is_observed) {
             area.draw(&Circle::new((x + 160, 104), 6, UNSEEN.filled()))?;
-            area.draw(&Text::new("while it could not see", (x + 178, 104), left(24)))?;
+            area.draw(&Text::new("not observable", (x + 178, 104), left(24)))?;
         }
         closed(area, sides.iter().map(|point| pixel(*point)), 6)?;
         dots(area, &outline.instants, 4, pixel)?;

@@ -88,7 +88,7 @@ pub(super) fn convexity_in_words(shape: &ShapeEstimate) -> String {
 pub(super) fn from_in_words(found: &Reconstruction) -> String {
     match &found.whole {
         Some(_) => "batch estimate of all measurements".to_owned(),
-        None => format!("from what {} believed of the support radii", found.track.method.name()),
+        None => format!("from the support radii that {} estimated", found.track.method.name()),
     }
 }
 

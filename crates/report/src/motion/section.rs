@@ -193,7 +193,7 @@ fn headline(observed: &Observed<'_>) -> Markup {
                 None => { " looked for " (names.join(", ")) }
             }
             @if answer.track.unobserved > 0 {
-                "; " b { "it could not see for " (answer.track.unobserved) " of " (observed.experiment.signals.times().len()) " samples" }
+                "; " b { "the state was not observable at " (answer.track.unobserved) " of " (observed.experiment.signals.times().len()) " samples" }
             }
             @if let Some(pace) = pace(observed, answer) { "; " (pace) }
             "."
@@ -246,7 +246,7 @@ pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
                 "The palms about their joint at " (outline.instants.len().min(most)) " samples. Large dots are the "
                 "centre of mass and the two contacts. Small dots are the part of the outline that " b { (outline.method.name()) }
                 " has recovered by then, blue where palm 1 touched it and orange where palm 2 did"
-                @if !outline.instants.iter().all(|instant| instant.is_observed) { ", pale where it could not see" }
+                @if !outline.instants.iter().all(|instant| instant.is_observed) { ", pale where the state was not observable" }
                 ". "
                 @if shape.is_some() {
                     "The thin line is the true outline; dots beside it are errors of the observer, or of the orientation, which is the "

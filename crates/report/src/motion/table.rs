@@ -108,7 +108,7 @@ pub(super) fn ends(observed: &Observed<'_>) -> Markup {
 fn tested(answer: &Answer) -> String {
     match answer.track.innovations {
         Some(own) if own.fits => format!("innovations pass ({})", p_in_words(own.probability)),
-        Some(own) => format!("innovations do not pass ({})", p_in_words(own.probability)),
+        Some(own) => format!("innovations fail ({})", p_in_words(own.probability)),
         None => "nothing tests it".to_owned(),
     }
 }
@@ -197,7 +197,7 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
         let name = answer.method.name();
         if answer.track.unobserved > 0 {
             lines.push(format!(
-                "{name} could not see for {} of {samples} samples, and held what it believed or integrated",
+                "{name}: the state was not observable at {} of {samples} samples, where the last estimate was held or integrated",
                 answer.track.unobserved
             ));
         }
@@ -231,7 +231,7 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
         let fails = answer.track.innovations.filter(|own| !own.fits);
         lines.extend(fails.map(|own| format!("{name}: {}", innovations_in_words(&own))));
         if answer.track.updates.is_empty() && answer.track.innovations.is_none() {
-            lines.push(format!("{name}: nothing that it believes is compared with what was read"));
+            lines.push(format!("{name}: its estimates are not tested against the measurements"));
         }
         if answer.track.together().is_some_and(|all| !all.fits) {
             lines.extend(verdict_lines(&answer.track).into_iter().map(|line| format!("{name}: {line}")));
@@ -242,7 +242,7 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
             p { (all_is_well(observed)) }
         } @else {
             details open[lines.len() <= 12] {
-                summary { "what they could not see or not do, and other remarks: " (lines.len()) }
+                summary { "where the state was not observable or a method failed, and other remarks: " (lines.len()) }
                 ul { @for line in &lines { li { (line) } } }
             }
         }
@@ -264,7 +264,7 @@ fn all_is_well(observed: &Observed<'_>) -> String {
         false => {
             let said = said.join(", and ");
             let first = said[..1].to_uppercase();
-            format!("{first}{}; there was no sample at which a method could not see.", &said[1..])
+            format!("{first}{}; at no sample was the state unobservable.", &said[1..])
         }
     }
 }

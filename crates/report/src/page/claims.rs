@@ -12,11 +12,14 @@ use palmistry_workbench::paper::Numbering;
 pub(super) fn tally(outcomes: &[&Outcome]) -> Markup {
     let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
     html! {
+        @if outcomes.is_empty() { p { "Nothing is claimed here; what follows is what was found of the system." } }
+        @else {
         p { b { (outcomes.len()) } @if outcomes.len() == 1 { " claim" } @else { " claims" } @if failed > 0 { ", " b.bad { (failed) " not as expected" } } @else { ", all as expected" } ":" }
         ul.tally {
             @for (word, count) in counts(outcomes.iter().copied()) {
                 li data-w=(word) title=(meaning(word)) { b { (count) } " " span.v { (word) } }
             }
+        }
         }
     }
 }
@@ -29,11 +32,16 @@ pub(super) fn claims_of(file: usize, claims: &[Placed<'_>], anchors: &Anchors) -
             h3 { "What is claimed" }
             div.cells.wide {
                 @for claim in own {
-                    a data-w=(claim.outcome.word()) class=[(!claim.outcome.ok).then_some("bad")] href=(format!("#{}", anchors.claim(claim.file, &claim.outcome.id))) { (claim.outcome.id) }
+                    a data-w=(claim.outcome.word()) class=[(!claim.outcome.ok).then_some("bad")] href=(format!("#{}", anchors.claim(claim.file, &claim.outcome.id))) { (breakable(&claim.outcome.id)) }
                 }
             }
         }
     }
+}
+
+/// An id that may be broken behind its dots and underscores, where a cell has no room for it on one line.
+fn breakable(id: &str) -> Markup {
+    html! { @for part in id.split_inclusive(['.', '_', '-', ':']) { (part) @if part.ends_with(['.', '_', '-', ':']) { wbr; } } }
 }
 
 /// One cell for each numbered equation: its number, the sign and colour of its verdict, and a way to its first entry.

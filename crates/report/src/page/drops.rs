@@ -1,11 +1,13 @@
 //! Where a rank drops, on the page: the sets as formulas, what the rank is on each, what proves the rest, what is open.
 
 use super::entry::raised;
+use super::inline::{in_line, lie_derivative};
 use crate::claims::outcomes::error_bound;
 use crate::document::document;
 use crate::formula::{conditions_mathml, formula_mathml};
 use crate::names::by_default_text;
 use maud::{Markup, PreEscaped, html};
+use palmistry_lang::Looks;
 use palmistry_prove::drops::{BoxShare, DropAnswer, DropSet, UsedMinor};
 use palmistry_rank::observability::WrittenState;
 
@@ -24,13 +26,13 @@ pub fn drops_page(answer: &DropAnswer) -> String {
         header { h1 { (answer.title) } p.y { (answer.file) } }
         main { section { (told(answer)) } }
     };
-    document(&format!("{}: where the rank drops", answer.title), &content, false)
+    document(&format!("{}: singular set", answer.title), &content, false)
 }
 
 fn told(answer: &DropAnswer) -> Markup {
     let DropAnswer { rank, dimension, .. } = answer;
     html! {
-        h3 { "Where the rank drops" }
+        h3 { "The singular set: where the rank is lower" }
         p {
             @if answer.is_final { "Generically the rank is " b { (rank) } " of " (dimension) "." }
             @else { "Asked for is the rank " b { (rank) } " of " (dimension) "; that it is so generically is not decided." }
@@ -57,11 +59,11 @@ fn conclusion(answer: &DropAnswer) -> Markup {
     html! {
         p.lead {
             @match (answer.is_exact(), answer.sets.is_empty()) {
-                (true, true) => { "It drops nowhere." }
-                (true, false) => { "It is lower on these sets, and nowhere else." }
-                (false, true) if answer.minors.is_empty() => { "Where it drops is not known." }
-                (false, true) => { "No set was found on which it is lower; the rest is open." }
-                (false, false) => { "It is lower on these sets; whether elsewhere too is open." }
+                (true, true) => { "The singular set is empty: nowhere is the rank lower." }
+                (true, false) => { "The rank is lower on these sets, and nowhere else." }
+                (false, true) if answer.minors.is_empty() => { "The singular set is not known: no case of it was decided." }
+                (false, true) => { "No set was found on which the rank is lower; the rest is open." }
+                (false, false) => { "The rank is lower on these sets; whether elsewhere too is open." }
             }
         }
         p {
@@ -145,7 +147,7 @@ fn minors(minors: &[UsedMinor]) -> Markup {
                     @for minor in minors.iter().take(MOST) {
                         tr {
                             td { @if minor.equations.is_empty() { "all states" } @else { (listed(&minor.equations, SHORT)) } }
-                            td.w { (minor.rows.join(", ")) }
+                            td.w { (rows(&minor.rows)) }
                             td { (product(&minor.factors)) }
                         }
                     }
@@ -154,6 +156,11 @@ fn minors(minors: &[UsedMinor]) -> Markup {
             @if minors.len() > MOST { p { "and " (minors.len() - MOST) " more, which the JSON has." } }
         }
     }
+}
+
+/// The Lie derivatives whose differentials are the rows of a minor.
+fn rows(rows: &[String]) -> Markup {
+    html! { @for (place, row) in rows.iter().enumerate() { @if place > 0 { ", " } (lie_derivative(row, None, &Looks::default())) } }
 }
 
 fn product(factors: &[(String, i64)]) -> Markup {
@@ -213,7 +220,7 @@ fn at(state: &WrittenState) -> Markup {
     html! {
         @for (place, at) in state.iter().enumerate() {
             @if place > 0 { ", " }
-            (at.name) @if at.exact.contains('=') { ": " } @else { " = " } (at.exact)
+            (in_line(&at.name, &Looks::default())) @if at.exact.contains('=') { ": " } @else { " = " } (at.exact)
         }
     }
 }

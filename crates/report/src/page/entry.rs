@@ -1,12 +1,13 @@
 //! One claim as an entry of the page: its formula, its verdict, what stands behind it, and where it stands in its file.
 
 use super::anchors::{Anchors, Placed};
-use crate::claims::outcomes::{error_bound, not_looked_at_text, special_text, witness_line};
+use super::inline::{field_name, in_line};
+use crate::claims::outcomes::{error_bound, not_looked_at_text, special_text, with_decimal};
 use crate::formula::formula_mathml_in;
-use crate::names::fields_text;
 use maud::{Markup, PreEscaped, html};
 use palmistry_lang::{Basis, Flaw, Looks};
-use palmistry_prove::claim::{Outcome, Verdict};
+use palmistry_prove::claim::{Outcome, Verdict, Witness};
+use palmistry_rank::observability::NamedCoordinate;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -36,13 +37,13 @@ pub(super) fn entry(claim: Placed<'_>, anchors: &Anchors, engines: &Engines<'_>)
                         // the entry itself scrolls: it needs no element of its own
                         (bare_formula(&outcome.statement, &outcome.looks))
                     }
-                    p { (engines.explain(&outcome.verdict)) (restated(outcome)) }
+                    p { (engines.explain(&outcome.verdict, &outcome.looks)) (restated(outcome)) }
                 }
             }
             @for told in &outcome.beside { p { (told) } }
             @for part in &outcome.not_looked_at { p { (not_looked_at_text(part)) } }
             @if let Some(special) = &outcome.at_files_values { p { (special_text(special)) } }
-            @if !outcome.fields.is_empty() { p { "fields: " (fields_text(&outcome.fields)) } }
+            @if !outcome.fields.is_empty() { p { "fields: " (fields(outcome)) } }
             @if let Some(from) = &outcome.follows { p { "follows " (from) } }
             @if let Some(remark) = &outcome.remark { p.r { (remark) } }
             @if let Some(conclusion) = &outcome.conclusion { p.r { b { "Conclusion: " } (conclusion) } }
@@ -57,11 +58,11 @@ fn faulty(outcome: &Outcome, fault: Flaw, engines: &Engines<'_>) -> Markup {
         @if let Some(quoted) = &outcome.quoted { p.q { span.l { (before) } q { (quoted) } } }
         @if let Some((statement, verdict)) = &outcome.printed {
             div.q { span.l { @if outcome.quoted.is_some() { "as" } @else { (before) } } (formula(statement, &outcome.looks)) }
-            p { b { (verdict.word()) } " " (engines.explain(verdict)) }
+            p { b { (verdict.word()) } " " (engines.explain(verdict, &outcome.looks)) }
             @if let Some(special) = &outcome.printed_at_files_values { p { (special_text(special)) } }
         }
         div.c { span.l { (between) } (formula(&outcome.statement, &outcome.looks)) }
-        p { b { (outcome.verdict.word()) } " " (engines.explain(&outcome.verdict)) }
+        p { b { (outcome.verdict.word()) } " " (engines.explain(&outcome.verdict, &outcome.looks)) }
     }
 }
 
@@ -79,6 +80,36 @@ fn bare_formula(text: &str, looks: &Looks) -> Markup {
     match formula_mathml_in(text, looks) {
         Some(formula) => html! { (PreEscaped(formula)) },
         None => html! { code { (text) } },
+    }
+}
+
+/// The fields along which was differentiated, each with what it is.
+fn fields(outcome: &Outcome) -> Markup {
+    html! {
+        @for (place, field) in outcome.fields.iter().enumerate() {
+            @if place > 0 { ", " }
+            (field.role.name()) " " (field_name(&field.name, &outcome.looks))
+        }
+    }
+}
+
+/// A state at which the two sides differ, and what they are there.
+fn witness(found: &Witness, looks: &Looks) -> Markup {
+    html! {
+        @if !found.state.is_empty() { "at " (state(&found.state, looks)) ": " }
+        @if let Some((row, column)) = found.entry { "entry " (row) "," (column) ": " }
+        "left = " (with_decimal(&found.left)) ", right = " (with_decimal(&found.right))
+    }
+}
+
+/// A state, its coordinates as mathematics and its numbers exactly; of an angle by its sine and cosine the nearest decimal as well.
+pub(super) fn state(at: &[NamedCoordinate], looks: &Looks) -> Markup {
+    html! {
+        @for (place, NamedCoordinate { name, exact, value }) in at.iter().enumerate() {
+            @if place > 0 { ", " }
+            (in_line(name, looks))
+            @if exact.contains("sin") { " = " (format!("{value:.6}")) " (" (exact) ")" } @else { " = " (exact) }
+        }
     }
 }
 
@@ -123,15 +154,15 @@ impl<'a> Engines<'a> {
         }
     }
 
-    fn explain(&self, verdict: &Verdict) -> Markup {
+    fn explain(&self, verdict: &Verdict, looks: &Looks) -> Markup {
         match verdict {
             Verdict::Proved { engine, log2_error } => match self.0.iter().position(|known| known == engine) {
                 Some(place) => html! {
                     "by " (name(place)) (certainty(*log2_error))
                 },
-                None => explain(verdict),
+                None => explain(verdict, looks),
             },
-            _ => explain(verdict),
+            _ => explain(verdict, looks),
         }
     }
 }
@@ -170,13 +201,13 @@ fn in_short(text: &str) -> Cow<'_, str> {
 }
 
 /// What stands behind a verdict.
-pub(super) fn explain(verdict: &Verdict) -> Markup {
+pub(super) fn explain(verdict: &Verdict, looks: &Looks) -> Markup {
     html! {
         @match verdict {
             Verdict::Proved { engine, log2_error } => {
                 (in_short(engine)) (certainty(*log2_error))
             }
-            Verdict::Refuted { witness, .. } => { (witness_line(witness)) }
+            Verdict::Refuted { witness: found, .. } => { (witness(found, looks)) }
             Verdict::Definition { text } => { (text) }
             Verdict::Undecided { why } => { (why) }
         }

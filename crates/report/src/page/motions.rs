@@ -47,7 +47,7 @@ fn of_a_set(name: &str, found: &UnobservableDirections, looks: &Looks) -> Markup
                 "."
             }
             @if !found.functions.is_empty() {
-                " Identifiable combinations (for almost all values): "
+                " Identifiable combinations (generically): "
                 @for (place, function) in found.functions.iter().enumerate() {
                     @if place > 0 { ", " }
                     span.f { (expression(&function.text, looks)) }

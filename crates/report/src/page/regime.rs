@@ -2,18 +2,19 @@
 
 use super::entry::{explain, formula};
 use super::findings::ranks_in_words;
-use super::inline::in_line;
+use super::inline::{conditions, field_name, in_line, lie_derivative, listed, with_list};
 use super::motions::unobservable_directions;
 use super::system::system_mathematics;
 use super::unknowns::unknowns;
-use crate::formula::conditions_mathml;
+use crate::axis::name_in_picture;
 use crate::plot;
 use crate::ranks::{deviation_text, taken_for_granted};
 use crate::structure::{DiagramGround, structure_picture};
 use maud::{Markup, PreEscaped, html};
 use palmistry_lang::Looks;
 use palmistry_prove::claim::Outcome;
-use palmistry_rank::sweep::{BranchAnswer, RankAnswer};
+use palmistry_rank::observability::CodistributionError;
+use palmistry_rank::sweep::{BranchAnswer, RankAnswer, RankError};
 use palmistry_workbench::paper::{
     DerivativesFound, FileFindings, LineFound, MapFound, ReductionFound, SetRank,
 };
@@ -44,17 +45,17 @@ pub(super) fn file_section(anchor: &str, file: &FileFindings, claims: &Markup, u
             (claims)
             @if !file.ranks.is_empty() {
                 h3 { "What is observable" }
-                @for line in granted(file) { p { (capitalised(&line)) "." } }
+                @for line in granted(file) { p { (with_list(&capitalised(&line), looks)) "." } }
                 (unknowns(&file.ranks, looks)) (unobservable_directions(&file.ranks, looks)) (ranks(&file.ranks, looks))
             }
-            @for map in &file.maps { (maps(map, units)) }
+            @for map in &file.maps { (maps(map, units, looks)) }
             @if !file.lines.is_empty() { (lines(&file.lines, units)) }
             @for found in &file.printed { (printed(found, &file.outcomes)) }
             @if file.ways.is_some() || file.derivatives.is_some() {
                 details {
                     summary { "Lie derivatives by several routes" }
-                    @if let Some(found) = &file.ways { (ways(found)) }
-                    @if let Some(found) = &file.derivatives { (derivatives(found)) }
+                    @if let Some(found) = &file.ways { (ways(found, looks)) }
+                    @if let Some(found) = &file.derivatives { (derivatives(found, looks)) }
                 }
             }
         }
@@ -89,41 +90,56 @@ fn granted(file: &FileFindings) -> Vec<String> {
     answer.map(taken_for_granted).unwrap_or_default()
 }
 
-fn maps(map: &MapFound, units: Units<'_>) -> Markup {
+fn maps(map: &MapFound, units: Units<'_>, looks: &Looks) -> Markup {
     html! {
         figure {
             div.grid {
                 @for (kind, drawn) in &map.maps {
                     @let title = if *kind == LandscapeRows::Own { "the file's own rows" } else { "the full codistribution" };
-                    @let title = map.view.of.as_ref().map_or(title.to_owned(), |of| format!("{title}: {of}"));
+                    @let title = map.view.of.as_ref().map_or(title.to_owned(), |of| format!("{title}: {}", name_in_picture(of, looks)));
                     @let units = [units(&drawn.x.name), units(&drawn.y.name)];
-                    (PreEscaped(plot::map(drawn, &title, [units[0].as_deref(), units[1].as_deref()])))
+                    (PreEscaped(plot::map(drawn, &title, [units[0].as_deref(), units[1].as_deref()], looks)))
                 }
             }
             figcaption {
-                b { (map.view.title) ". " }
-                "The standard deviation of " (map.view.of.as_deref().unwrap_or("the worst state")) " over its prior one, where each row is measured up to its own range (computed, not certified). Light is "
+                b { (title_of(map, looks)) ". " }
+                "The standard deviation of " @match &map.view.of { Some(of) => { (in_line(of, looks)) } None => { "the worst state" } }
+                " over its prior one, where each row is measured up to its own range (computed, not certified). Light is "
                 "small, which is well; dark is large; green is infinite, which is unobservable or not distinguishable from it; white "
                 "is a singularity. "
-                @if map.view.of.is_none() { (worst_of(map)) }
+                @if map.view.of.is_none() { (worst_of(map, looks)) }
                 @if let Some(caption) = &map.view.caption { (caption) }
             }
         }
     }
 }
 
+/// What a map is called: by its file, or, where nobody asked for it, by what it shows.
+fn title_of(map: &MapFound, looks: &Looks) -> Markup {
+    match &map.view.of {
+        Some(of) if map.view.span.is_empty() => html! { "how well " (in_line(of, looks)) " is observable" },
+        _ => html! { (map.view.title) },
+    }
+}
+
 /// Which state is the worst in which part of each map.
-fn worst_of(found: &MapFound) -> String {
-    let of = |map: &Map| {
-        let all: usize = map.shown.iter().map(|(_, count)| count).sum();
-        let part = |(name, count): &(String, usize)| {
-            format!("{name} in {:.0} %", 100.0 * *count as f64 / all as f64)
-        };
-        map.shown.iter().map(part).collect::<Vec<_>>().join(", ")
-    };
-    let parts: Vec<String> =
-        found.maps.iter().map(|(_, map)| of(map)).filter(|text| !text.is_empty()).collect();
-    if parts.is_empty() { String::new() } else { format!("The worst is {} of the cells. ", parts.join("; ")) }
+fn worst_of(found: &MapFound, looks: &Looks) -> Markup {
+    let shown = found.maps.iter().map(|(_, map)| map).filter(|map| !map.shown.is_empty());
+    let shown: Vec<&Map> = shown.collect();
+    let all = |map: &Map| map.shown.iter().map(|(_, count)| count).sum::<usize>() as f64;
+    html! {
+        @if !shown.is_empty() {
+            "The worst is "
+            @for (place, map) in shown.iter().enumerate() {
+                @if place > 0 { "; " }
+                @for (place, (name, count)) in map.shown.iter().enumerate() {
+                    @if place > 0 { ", " }
+                    (in_line(name, looks)) " in " (format!("{:.0} %", 100.0 * *count as f64 / all(map)))
+                }
+            }
+            " of the cells. "
+        }
+    }
 }
 
 fn lines(lines: &[LineFound], units: Units<'_>) -> Markup {
@@ -140,16 +156,6 @@ fn lines(lines: &[LineFound], units: Units<'_>) -> Markup {
                 ": its standard deviation over its prior one, that of the worst in red; dots above the scale where it is infinite. "
                 "Distances are in the coordinate that moves."
             }
-        }
-    }
-}
-
-/// Conditions as mathematics; as they are written where they are none.
-fn conditions(written: &[String], looks: &Looks) -> Markup {
-    html! {
-        @match conditions_mathml(written, looks) {
-            Some(formula) => { span.f { (PreEscaped(formula)) } }
-            None => { code { (written.join(", ")) } }
         }
     }
 }
@@ -202,17 +208,42 @@ fn in_symbols(lists: &[String], looks: &Looks) -> Markup {
     html! {
         @for (place, list) in lists.iter().enumerate() {
             @if place > 0 { "; " }
-            @for (place, name) in list.split(", ").enumerate() { @if place > 0 { ", " } (in_line(name, looks)) }
+            (listed(&list.split(", ").collect::<Vec<_>>(), looks))
         }
     }
 }
 
 /// The Lie derivatives that were used, branches with the same ones together.
-fn distinct_words(answer: &RankAnswer) -> Vec<String> {
-    let mut found: Vec<String> =
-        answer.branches.iter().map(|branch| branch.lie_derivatives.join(", ")).collect();
+fn distinct_lie_derivatives(answer: &RankAnswer) -> Vec<&[String]> {
+    let mut found: Vec<&[String]> =
+        answer.branches.iter().map(|branch| branch.lie_derivatives.as_slice()).collect();
     found.dedup();
     found
+}
+
+/// They are set as mathematics.
+fn lie_derivatives(answer: &RankAnswer, looks: &Looks) -> Markup {
+    let fields: Vec<&str> = answer.fields.iter().map(|field| field.name.as_str()).collect();
+    html! {
+        @for used in distinct_lie_derivatives(answer) {
+            div {
+                @for (place, one) in used.iter().enumerate() {
+                    @if place > 0 { ", " }
+                    (lie_derivative(one, Some(&fields), looks))
+                }
+            }
+        }
+    }
+}
+
+/// Why there is no rank on a set.
+fn without_rank(rank: &SetRank, why: &str, looks: &Looks) -> Markup {
+    match &rank.found {
+        Err(RankError::Codistribution(CodistributionError::Pole { divisor })) => html! {
+            "undefined at every state there: a division by " span.f { (in_line(divisor, looks)) } " = 0"
+        },
+        _ => html! { (with_list(why, looks)) },
+    }
 }
 
 /// The rank on each set, a row each.
@@ -229,7 +260,7 @@ fn ranks(ranks: &[SetRank], looks: &Looks) -> Markup {
             tbody {
                 @for rank in ranks {
                     tr {
-                        td { (rank.name()) @if let Some(set) = &rank.set { br; (conditions(&set.written, looks)) } }
+                        td.s { (rank.name()) @if let Some(set) = &rank.set { br; (conditions(&set.written, looks)) } }
                         @match rank.answer() {
                             Ok(answer) => {
                                 td.k { b { (ranks_in_words(answer, false)) } " of " (answer.dimension) }
@@ -242,12 +273,12 @@ fn ranks(ranks: &[SetRank], looks: &Looks) -> Markup {
                                     td { b { (ranks_in_words(answer, true)) } }
                                     td { (in_symbols(&unobservable(answer, true), looks)) }
                                 }
-                                td.w { @for words in distinct_words(answer) { div { (words) } } }
+                                td.w { (lie_derivatives(answer, looks)) }
                                 td.n { (answer.branches.iter().map(|b| b.full.samples).sum::<u64>()) }
                                 td.n { (answer.branches.iter().map(|b| b.full.certified).sum::<u64>()) }
-                                td.n { (least_observable(answer)) }
+                                td.n { (least_observable(answer, looks)) }
                             }
-                            Err(why) => { td colspan=(if has_own { "8" } else { "6" }) { (why) } }
+                            Err(why) => { td.bad[!rank.as_expected()] colspan=(if has_own { "8" } else { "6" }) { (without_rank(rank, &why, looks)) } }
                         }
                     }
                 }
@@ -257,12 +288,14 @@ fn ranks(ranks: &[SetRank], looks: &Looks) -> Markup {
 }
 
 /// The state with the largest standard deviation over its prior one.
-fn least_observable(answer: &RankAnswer) -> String {
+fn least_observable(answer: &RankAnswer, looks: &Looks) -> Markup {
     let found = answer.branches.iter().filter_map(|branch| branch.deviations.as_ref());
     let all: Vec<_> = found.filter_map(|found| Some((found.least.as_ref()?, found))).collect();
     let least = all.into_iter().max_by(|(a, _), (b, _)| a.deviation.total_cmp(&b.deviation));
-    least
-        .map_or("-".to_owned(), |(least, found)| format!("{}: {}", least.state, deviation_text(found, least)))
+    match least {
+        Some((least, found)) => html! { (in_line(&least.state, looks)) ": " (deviation_text(found, least)) },
+        None => html! { "-" },
+    }
 }
 
 fn printed(found: &PrintedExpression, outcomes: &[Outcome]) -> Markup {
@@ -336,7 +369,7 @@ fn printed(found: &PrintedExpression, outcomes: &[Outcome]) -> Markup {
                     @for outcome in poles {
                         tr {
                             td.w { (formula(&outcome.statement, looks)) }
-                            td.w { (outcome.word()) ": " (explain(&outcome.verdict)) }
+                            td.w { (outcome.word()) ": " (explain(&outcome.verdict, looks)) }
                         }
                     }
                 }
@@ -354,12 +387,14 @@ fn denominator(found: &ExpandedText) -> String {
 }
 
 /// Whether three ways of automatic differentiation agree.
-fn ways(found: &WaysAgreement) -> Markup {
+fn ways(found: &WaysAgreement, looks: &Looks) -> Markup {
     let [by_duals, by_series] = found.largest;
     html! {
         p class=[(!found.agree()).then_some("bad")] {
             "Automatic differentiation: num-dual's dual numbers and Taylor series give the graph's Lie derivatives ("
-            (found.derivatives) " along " (found.fields.join(", ")) ", up to order " (found.order) ") to "
+            (found.derivatives) " along "
+            @for (place, field) in found.fields.iter().enumerate() { @if place > 0 { ", " } (field_name(field, looks)) }
+            ", up to order " (found.order) ") to "
             (format!("{by_duals:.0e}")) " and " (format!("{by_series:.0e}"))
             @if found.too_long > 0 { "; " (found.too_long) " are too long to be compared" }
             "."
@@ -367,12 +402,12 @@ fn ways(found: &WaysAgreement) -> Markup {
     }
 }
 
-fn derivatives(found: &DerivativesFound) -> Markup {
+fn derivatives(found: &DerivativesFound, looks: &Looks) -> Markup {
     html! {
         h3 { "Lie derivatives by two routes" }
         p {
             "The derivatives of the shared expression graph against num-dual's nested dual numbers, which share no rule of "
-            "differentiation: " (found.output) " along " (found.field) ", again and again."
+            "differentiation: " (in_line(&found.output, looks)) " along " (field_name(&found.field, looks)) ", again and again."
         }
         div.grid {
             table {

@@ -1,6 +1,6 @@
 //! A system as a paper writes it: what its letters are, its fields, its outputs.
 
-use crate::axis::unit_of;
+use crate::axis::{unit_in_print, unit_of};
 use crate::formula::{definition_mathml, formula_mathml_in};
 use crate::names::plain_number;
 use maud::{Markup, PreEscaped, html};
@@ -58,7 +58,7 @@ fn field_rows(field: &FieldAsWritten, mark: &str, looks: &Looks) -> Markup {
                 tr {
                     @if state == "others" { td colspan="3" { "the other states stand still" } }
                     @else {
-                        td { (formula(state, looks)) (mark) } td { "=" } td { (formula(rate, looks)) }
+                        td.nb { (formula(state, looks)) (mark) } td { "=" } td { (formula(rate, looks)) }
                     }
                 }
             }
@@ -101,10 +101,19 @@ fn letters(system: &System) -> Markup {
                 " "
                 @for (place, symbol) in symbols.iter().enumerate() {
                     @let name = system.symbol_name(*symbol);
+                    @let value = system.symbol_info(*symbol).and_then(|info| info.default.as_ref());
+                    @let unit = unit_of(system, name);
                     @if place > 0 { ", " }
-                    (formula(name, looks))
-                    @if let Some(value) = system.symbol_info(*symbol).and_then(|info| info.default.as_ref()) { " = " (plain_number(value)) }
-                    @if let Some(unit) = unit_of(system, name) { " (" (unit) ")" }
+                    // on one line: a value, and its unit behind it
+                    span.nb {
+                        (formula(name, looks))
+                        @if let Some(value) = value { " = " (plain_number(value)) }
+                        @match (value, unit) {
+                            (Some(_), Some(unit)) => { "\u{a0}" (unit_in_print(&unit)) }
+                            (None, Some(unit)) => { " (" (unit_in_print(&unit)) ")" }
+                            _ => {}
+                        }
+                    }
                 }
             }
             "."

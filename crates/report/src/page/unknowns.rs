@@ -1,6 +1,6 @@
 //! What is observable generically, on the page: a sentence, and a table of the unknowns.
 
-use super::inline::in_line;
+use super::inline::{conditions, in_line};
 use crate::ranks::generic::{generic_sentence, unknown_verdict};
 use maud::{Markup, html};
 use palmistry_lang::Looks;
@@ -23,7 +23,7 @@ fn of_branch(branch: &BranchAnswer, looks: &Looks) -> Markup {
     html! {
         p {
             (first) (letters.as_str())
-            @if !branch.conditions.is_empty() { ", where " (branch.conditions.join(", ")) }
+            @if !branch.conditions.is_empty() { ", where " (conditions(&branch.conditions, looks)) }
             "."
         }
         // where everything is observable the sentence says so of each

@@ -76,7 +76,7 @@ pub fn page_with(found: &Findings, theorems: &TheoremAddresses) -> String {
             @if !slow.is_empty() { a href="#slow" { "Bodies at rest" } }
             @if !space.is_empty() { a href="#space" { "Bodies in space" } }
             @if !joint.is_empty() { a href="#experiments" { "Experiments" } }
-            a href="#claims" { "All claims" }
+            @if !claims.is_empty() { a href="#claims" { "All claims" } }
             a href="#sources" { "The proof files" }
         }))
         main {
@@ -91,7 +91,7 @@ pub fn page_with(found: &Findings, theorems: &TheoremAddresses) -> String {
             @if !slow.is_empty() { (slow_section(&slow)) }
             @if !space.is_empty() { (space_section(&space)) }
             @if !joint.is_empty() { (joint_section(&joint)) }
-            (all_claims(&claims, &anchors, &files))
+            @if !claims.is_empty() { (all_claims(&claims, &anchors, &files)) }
             (sources(&systems, &anchors))
         }
     };
@@ -118,6 +118,7 @@ fn header(found: &Findings, links: Markup) -> Markup {
             }
             p { "Checked by palmistry from first principles: what holds, and what does not." }
             (tally(&outcomes))
+            @if !outcomes.is_empty() {
             @if outcomes.iter().all(|outcome| outcome.ok && outcome.fault.is_none()) { p { "No errata." } }
             details {
                 summary { "what stands behind each verdict" }
@@ -127,6 +128,7 @@ fn header(found: &Findings, links: Markup) -> Markup {
                     " a printed form refuted and its corrected form proved. " b { "Holds by definition" }
                     ": the two sides are one expression once names are put in, so that there is nothing to prove."
                 }
+            }
             }
             p.y {
                 "Seed " (found.seed)

@@ -48,6 +48,12 @@ impl SetRank {
         }
     }
 
+    /// Whether no state was found there that has a rank, and none that is a pole either.
+    pub fn is_undecided(&self) -> bool {
+        let without_states = |branch: &BranchAnswer| branch.full.samples == 0 && !branch.full.interrupted;
+        !self.is_pole() && self.found.as_ref().is_ok_and(|answer| answer.branches.iter().all(without_states))
+    }
+
     /// The rank, or as text why there is none.
     pub fn answer(&self) -> Result<&RankAnswer, String> {
         match &self.found {
@@ -59,6 +65,15 @@ impl SetRank {
                 let reasons: Vec<&str> = reasons.into_iter().collect();
                 Err(format!("no state that was drawn there has a rank: {}", reasons.join(", ")))
             }
+            Ok(answer) if self.is_undecided() => Err(match &answer.left_out[..] {
+                [] => "no state was found there at which the rank could be decided".to_owned(),
+                parts => {
+                    let parts = parts.join(", or where ");
+                    format!(
+                        "not decided: the rank is that of parts of the states, and none was found there where {parts}"
+                    )
+                }
+            }),
             Ok(answer) => Ok(answer),
         }
     }
@@ -67,7 +82,7 @@ impl SetRank {
     pub fn as_expected(&self) -> bool {
         match &self.set {
             Some(set) if set.is_pole => self.is_pole(),
-            _ => self.found.is_ok() && !self.is_pole(),
+            _ => self.found.is_ok() && !self.is_pole() && !self.is_undecided(),
         }
     }
 }

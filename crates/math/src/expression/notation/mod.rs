@@ -13,7 +13,7 @@ mod tests;
 pub use latex::latex;
 pub use layout::FormulaLayout;
 pub use mathml::{mathml, mathml_in_pieces};
-pub use name::in_letters;
+pub use name::{in_letters, letter_and_index};
 
 use crate::expression::syntax::Relation;
 

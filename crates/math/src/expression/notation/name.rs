@@ -72,6 +72,9 @@ fn index_within(letters: &str) -> Option<usize> {
         }
     }
     let (first, index) = letters.split_at(letters.chars().next()?.len_utf8());
+    if begins_with_greek(index).is_some() && !NO_GREEK_INDEX.contains(&letters) {
+        return Some(first.len());
+    }
     let is_large = first.chars().all(|c| c.is_ascii_uppercase());
     let is_one = match index.len() {
         0 => false,
@@ -84,6 +87,21 @@ fn index_within(letters: &str) -> Option<usize> {
         _ => INDICES.contains(&index),
     };
     is_one.then_some(first.len())
+}
+
+/// Words that end in the name of a Greek letter, most of them such names with a large letter.
+const NO_GREEK_INDEX: [&str; 10] =
+    ["Beta", "Zeta", "Eta", "beta", "zeta", "theta", "meta", "biota", "Iota", "Epsilon"];
+
+/// The length of the name of a Greek letter at the head of an index, of which no more is left than an index has: 5 of `alphaf`. Names of two
+/// letters are no such heads: `nu` is in `number`.
+fn begins_with_greek(index: &str) -> Option<usize> {
+    let names =
+        GREEK.iter().map(|(name, _, _)| *name).filter(|name| name.len() > 2 && index.starts_with(name));
+    let name = names.max_by_key(|name| name.len())?;
+    let rest = &index[name.len()..];
+    let is_short = rest.len() < 2 || rest.len() < 4 && !rest.chars().any(|c| "aeiouAEIOU".contains(c));
+    (is_short || INDICES.contains(&rest)).then_some(name.len())
 }
 
 /// A look is no longer than this, in bytes.
@@ -254,7 +272,17 @@ impl FormulaName {
     }
 }
 
-/// A name in letters alone, for places that hold no formula, such as the axis of a picture: `ω₀` for `omega0`. What has accents
+/// A name as a letter and what stands below the line beside it, for pictures, whose labels hold no formula: `F` and `yf` of `Fyf`, `C` and `αf` of
+/// `Calphaf`. None where it has accents, or is no name of such parts. `look` is what a file says of it.
+pub fn letter_and_index(text: &str, look: Option<&FormulaName>) -> Option<(String, String)> {
+    let by_rule = FormulaName::of(text);
+    let name = look.or(by_rule.as_ref()).filter(|name| name.accents.is_empty() && name.from.is_empty())?;
+    let shown = |letters: &str| greek(letters).map_or(letters.to_owned(), |(letter, _)| letter.to_string());
+    let part = |part: &String| runs(part).into_iter().map(shown).collect::<String>();
+    Some((shown(&name.letters), name.index.iter().map(part).collect::<Vec<_>>().join(",")))
+}
+
+/// A name in letters alone, for places that hold no formula, such as what stands under the pointer: `ω₀` for `omega0`. What has accents
 /// or an index of letters stays as it is written.
 pub fn in_letters(text: &str) -> String {
     let plain = |name: &FormulaName| name.accents.is_empty() && name.from.is_empty() && name.index.len() < 2;
@@ -267,7 +295,8 @@ pub fn in_letters(text: &str) -> String {
     }
 }
 
-/// A part of an index, cut into runs of digits and of letters.
+/// A part of an index, cut into runs of digits and of letters, and of letters into a Greek one by its name and the rest: `alpha` and `f` of
+/// `alphaf`.
 pub(super) fn runs(part: &str) -> Vec<&str> {
     let mut found = Vec::new();
     let mut begin = 0;
@@ -278,5 +307,9 @@ pub(super) fn runs(part: &str) -> Vec<&str> {
         }
     }
     found.push(&part[begin..]);
-    found
+    let cut = |run| match begins_with_greek(run).filter(|end| *end < run.len()) {
+        Some(end) => vec![&run[..end], &run[end..]],
+        None => vec![run],
+    };
+    found.into_iter().flat_map(cut).collect()
 }

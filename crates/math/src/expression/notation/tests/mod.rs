@@ -192,6 +192,11 @@ fn names_of_a_letter_and_an_index() {
         ("Lq", "L_{q}"),
         ("Fyf", "F_{\\mathrm{yf}}"),
         ("alphaf", "\\alpha_{f}"),
+        ("Calphaf", "C_{\\alpha f}"),
+        ("Kphi", "K_{\\varphi}"),
+        ("Czeta1", "C_{\\zeta,1}"),
+        ("meta", "\\mathrm{meta}"),
+        ("Beta", "\\mathrm{Beta}"),
         ("omegam", "\\omega_{m}"),
         ("thetaref", "\\theta_{\\mathrm{ref}}"),
         ("Vmax", "V_{\\mathrm{max}}"),
@@ -212,6 +217,21 @@ fn names_of_a_letter_and_an_index() {
     ] {
         assert_eq!(in_latex(name), expected, "{name}");
     }
+}
+
+/// The same in a picture, beside which stands no formula: a letter, and what is set below the line.
+#[test]
+fn names_in_pictures() {
+    let of = |name: &str| letter_and_index(name, None);
+    let pair = |letter: &str, index: &str| Some((letter.to_owned(), index.to_owned()));
+    assert_eq!(of("Fyf"), pair("F", "yf"));
+    assert_eq!(of("Calphaf"), pair("C", "\u{3b1}f"));
+    assert_eq!(of("omega0"), pair("\u{3c9}", "0"));
+    assert_eq!(of("x_1_max"), pair("x", "1,max"));
+    assert_eq!(of("mass"), pair("mass", ""));
+    assert_eq!((of("r2_dot"), of("")), (None, None));
+    let look = FormulaName::of_latex("F_{\\psi}");
+    assert_eq!(letter_and_index("force", look.as_ref()), pair("F", "\u{3c8}"));
 }
 
 /// What a file may say of a name: letters, accents and indices, and nothing else of LaTeX.
