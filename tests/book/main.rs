@@ -16,11 +16,13 @@ mod picture;
 mod blocks;
 mod complete;
 mod gallery;
+mod kept;
 mod likeness;
 mod numbers;
 mod pages;
 mod pictures;
 mod solutions;
+mod sources;
 mod values;
 
 use pages::{go_through, pages};

@@ -16,7 +16,8 @@
 //!
 //! - `.a[0].b`, a place in JSON. `.list[key=value]` (or `!=`) are those elements, `.*` is each value of an object. A list counts by
 //!   its length; `max`, `min` or `sum` may stand before the place;
-//! - a text of the output with `{}` where it has the number;
+//! - a text of the output with `{}` where it has the number, or with several for all numbers of the words; between blanks `...` stands
+//!   for any words and `#` for one;
 //! - a text without `{}`, which the output has to contain. Without a sign the output contains the words of the page.
 //!
 //! `* 1e3` or `/ 2^20` behind a number changes its unit.
@@ -25,11 +26,14 @@
 //! `lines in FILES` (without tests; right to a tenth), `files in FOLDER/*.ending`.
 //! `held, row by row:` (or `rows 2 to 5`) is about each row of the nearest table above, and `{title}` is its cell below that title.
 //! `held on request:` is for what takes long: `cargo test --release --test book -- --ignored`.
+//! `held: kept NAME` compares with an output that is kept in `reports/kept` (`kept.rs`), of a command that takes minutes.
+//! What else a comment may say of numbers, and that each table says something, is in `sources.rs`.
 
 use crate::blocks::blocks;
 use crate::common::folder;
+use crate::kept;
 use crate::pages::pages;
-use crate::values::{Number, Value, collapsed, in_output, in_source, numbers_of};
+use crate::values::{Number, Value, all_numbers, collapsed, in_output, in_source, numbers_of};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
@@ -49,8 +53,10 @@ struct Held {
     /// The files that the page shows above.
     files: Vec<(String, String)>,
     on_request: bool,
-    /// A command, or nothing where the source is asked.
+    /// A command, or nothing where the source or a kept output is asked.
     command: Option<String>,
+    /// The name of a kept output.
+    kept: Option<String>,
     claims: Vec<Claim>,
 }
 
@@ -69,7 +75,7 @@ pub struct Output {
     pub all: String,
 }
 
-fn root() -> &'static Path {
+pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
@@ -100,7 +106,7 @@ fn paragraph(lines: &[&str]) -> Vec<String> {
 }
 
 /// The lines of the nearest table above.
-fn table(lines: &[&str]) -> Vec<String> {
+pub fn table(lines: &[&str]) -> Vec<String> {
     let is_row = |line: &&&str| line.starts_with('|');
     let above = lines.iter().rev().skip_while(|line| !is_row(line)).take_while(is_row);
     let mut above: Vec<String> = above.map(|line| (*line).to_owned()).collect();
@@ -109,7 +115,7 @@ fn table(lines: &[&str]) -> Vec<String> {
 }
 
 /// The cells of a row.
-fn cells(row: &str) -> Vec<String> {
+pub fn cells(row: &str) -> Vec<String> {
     row.trim().trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()
 }
 
@@ -217,7 +223,8 @@ fn read(
             place: format!("{}:{}", place.0, place.1),
             files: files.to_vec(),
             on_request,
-            command: (source != "source").then(|| filled(&source, &row)),
+            command: (source != "source" && !source.starts_with("kept ")).then(|| filled(&source, &row)),
+            kept: source.strip_prefix("kept ").map(|name| filled(name.trim(), &row)),
             claims: own,
         });
     }
@@ -238,8 +245,9 @@ fn comments(path: &Path, wrong: &mut Vec<String>) -> Vec<Held> {
     while at < lines.len() {
         let begin = at;
         at += 1;
+        let held = lines[begin].trim().strip_prefix("<!-- held");
         let Some(mut comment) =
-            lines[begin].trim().strip_prefix("<!-- held").map(|rest| format!("held{rest}"))
+            held.filter(|rest| !rest.starts_with(" elsewhere:")).map(|rest| format!("held{rest}"))
         else {
             continue;
         };
@@ -307,7 +315,18 @@ fn judge(claim: &Claim, output: Option<&Output>) -> Result<(), String> {
         Some(output) => in_output(&claim.what, claim.words == claim.what, output)?,
         None => in_source(root(), &claim.what)?,
     };
-    let Value::Number(value) = value else { return Ok(()) };
+    let value = match value {
+        Value::Number(value) => value,
+        Value::Text => return Ok(()),
+        Value::Numbers(values) => {
+            let said = all_numbers(&claim.words.replace(['[', ']'], ""));
+            let is_so = said.len() == values.len()
+                && said.iter().zip(&values).all(|(said, value)| said.compares(claim.sign, *value));
+            let why =
+                || format!("the page says '{}', and these are {values:?} ({})", claim.words, claim.what);
+            return is_so.then_some(()).ok_or_else(why);
+        }
+    };
     let Some(said) = Number::of(&claim.words) else {
         return Err(format!("'{}' has no number", claim.words));
     };
@@ -360,17 +379,28 @@ fn hold(on_request: bool) {
     let done = done.into_inner().expect("a map");
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     for held in &asked {
-        let output = key(held).map(|key| &done[&key]);
+        let kept = match held.kept.as_deref().map(kept::output) {
+            Some(Ok(None)) => continue,
+            Some(Err(why)) => {
+                wrong.push(format!("{}: {why}", held.place));
+                continue;
+            }
+            Some(Ok(output)) => output,
+            None => None,
+        };
+        let output = key(held).map(|key| &done[&key]).or(kept.as_ref());
         for claim in &held.claims {
             let kind = match &held.command {
                 Some(_) => "of commands",
+                None if held.kept.is_some() => "of kept outputs",
                 None if claim.what.starts_with("lines ") || claim.what.starts_with("files ") => "of files",
                 None if claim.what.contains("{}") => "of texts in the source",
                 None => "constants",
             };
             *counts.entry(kind).or_default() += numbers_of(&claim.words).max(1);
             if let Err(why) = judge(claim, output) {
-                let command = held.command.as_deref().unwrap_or("the source");
+                let by = held.command.as_deref().or(held.kept.as_deref());
+                let command = by.unwrap_or("the source");
                 wrong.push(format!("{}: {why}\n    by: {command}", claim.place));
             }
         }
@@ -418,6 +448,8 @@ fn what_is_false_is_said() {
         "held: x\nof [forty], at seven = of {},",
         "held: x\nforty, at [seven] = at {} states\n16 < of {},",
         "held: x\nThe rank = rank 16 of",
+        "held: x\n16 of forty, at seven = rank {} of {}, at {} states",
+        "held: x\nof forty, at seven = rank # of {}, ... {} states",
     ] {
         assert_eq!(said(text, right), Ok(()), "{right}");
     }
@@ -428,6 +460,8 @@ fn what_is_false_is_said() {
         ("held: x\n16 = .range", "no place '.range'"),
         ("held: x\n16 of forty", "the output does not contain '16 of forty'"),
         ("held: x\n16 = range {}", "the output does not contain 'range {}'"),
+        ("held: x\n16 of forty = rank # ... {} at {}", "the output does not contain"),
+        ("held: x\nat seven = of {}, at {} states", "the page says 'at seven', and these are [40.0, 7.0]"),
         ("held: x\n", "it holds nothing"),
         ("held by x\n16", "no ':'"),
         ("held, row by row: x\n{a} = .rank", "no table"),

@@ -39,6 +39,8 @@ pub fn collapsed(text: &str) -> String {
 /// What something is compared with.
 pub enum Value {
     Number(f64),
+    /// Several, in the order of the words.
+    Numbers(Vec<f64>),
     /// A text that is there.
     Text,
 }
@@ -155,13 +157,18 @@ pub fn numbers_of(words: &str) -> usize {
     if words.contains('[') {
         return 1;
     }
-    let (mut count, mut at) = (0, 0);
+    all_numbers(words).len()
+}
+
+/// The numbers of some words, in their order.
+pub fn all_numbers(words: &str) -> Vec<Number> {
+    let (mut all, mut at) = (Vec::new(), 0);
     while at < words.len() {
         let found = begins(words, at).then(|| Number::at(&words[at..])).flatten();
-        count += usize::from(found.is_some());
-        at += found.map_or(1, |(_, length)| length.max(1));
+        at += found.as_ref().map_or(1, |(_, length)| *length.max(&1));
+        all.extend(found.map(|(number, _)| number));
     }
-    count
+    all
 }
 
 /// A value without `* 1e3` or `/ 2^20` behind it, and that factor.
@@ -177,6 +184,22 @@ fn scaled(what: &str) -> (&str, f64) {
     (what, 1.0)
 }
 
+/// The numbers in a text at the places of `{}`. `...` between blanks stands for any words, the fewest that do, and `#` for one.
+fn in_places(text: &str, pattern: &str) -> Option<Vec<f64>> {
+    let is_plain = !pattern.split(' ').any(|word| word == "..." || word == "#");
+    if is_plain && pattern.matches("{}").count() == 1 {
+        return in_place(text, pattern).map(|value| vec![value]);
+    }
+    let parts = pattern.split(' ').map(|word| match word {
+        "..." => ".*?".to_owned(),
+        "#" => "[^ ]+".to_owned(),
+        word => escaped(word).replace(r"\{\}", r"([-+]?[0-9]+(?:,[0-9]{3})*(?:\.[0-9]+)?(?:e[-+]?[0-9]+)?)"),
+    });
+    let pattern = format!("(?:^| ){}(?:$|[^0-9.])", parts.collect::<Vec<_>>().join(" "));
+    let found = regex_lite::Regex::new(&pattern).ok()?.captures(text)?;
+    found.iter().skip(1).map(|number| Some(Number::at(number?.as_str())?.0.value)).collect()
+}
+
 /// The number in a text at the place of `{}`.
 fn in_place(text: &str, pattern: &str) -> Option<f64> {
     let (before, after) = pattern.split_once("{}")?;
@@ -190,6 +213,15 @@ fn in_place(text: &str, pattern: &str) -> Option<f64> {
         }
         rest[end..].starts_with(after).then_some(number.value)
     })
+}
+
+/// A text as a regular expression that finds it.
+fn escaped(text: &str) -> String {
+    let marked = text.chars().flat_map(|c| {
+        let is_plain = c.is_alphanumeric() || !c.is_ascii();
+        [(!is_plain).then_some('\\'), Some(c)]
+    });
+    marked.flatten().collect()
 }
 
 /// A value in what a command printed.
@@ -212,9 +244,9 @@ pub fn in_output(what: &str, is_quoted: bool, output: &Output) -> Result<Value, 
         return in_json(&json, path, fold).map(|value| Value::Number(value * factor));
     }
     if place.contains("{}") {
-        return in_place(&output.all, &collapsed(place))
-            .map(|value| Value::Number(value * factor))
-            .ok_or_else(lacks);
+        let found = in_places(&output.all, &collapsed(place)).ok_or_else(lacks)?;
+        let found: Vec<f64> = found.into_iter().map(|value| value * factor).collect();
+        return Ok(if let [value] = found[..] { Value::Number(value) } else { Value::Numbers(found) });
     }
     let words = collapsed(&if is_quoted { what.replace(['[', ']'], "") } else { what.to_owned() });
     output.all.contains(&words).then_some(Value::Text).ok_or_else(lacks)
@@ -446,4 +478,22 @@ fn numbers_are_read_as_pages_write_them() {
         assert_eq!(constant(text, name), Some(value), "{name}");
     }
     assert_eq!(constant(text, "E"), Some(3.0 * 1048576.0));
+}
+
+#[test]
+fn words_between_may_be_any() {
+    let text = "smooth: 4 bodies; (3.47) on 2 margin 0.05 4 1 0 0.15 3 7 8 rough: 5 bodies; (3.47) on 0 margin 0.15 1 2 3.5e-2, end";
+    for (pattern, values) in [
+        ("smooth: ... 0.15 {}", Some(vec![3.0])),
+        ("smooth: ... 0.15 # {}", Some(vec![7.0])),
+        ("smooth: ... 0.05 {} {} {}", Some(vec![4.0, 1.0, 0.0])),
+        ("{} bodies; (3.47) on {}", Some(vec![4.0, 2.0])),
+        ("rough: ... (3.47) on {} margin", Some(vec![0.0])),
+        ("rough: ... 0.15 # # {},", Some(vec![0.035])),
+        ("rough: ... 0.05 {}", None),
+        ("mooth: ... 0.15 {}", None),
+        ("smooth: ... bodies, {}", None),
+    ] {
+        assert_eq!(in_places(text, pattern), values, "{pattern}");
+    }
 }
