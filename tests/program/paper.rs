@@ -4,6 +4,7 @@ use crate::common::{folder, json, palmistry, write};
 use palmistry::System;
 use palmistry::paper::{Findings, Paper, VerifyOptions, verify};
 use palmistry::system::LineEnd;
+use serde_json::{Value, json};
 use std::path::Path;
 
 /// A pendulum on a cart that is pushed, and the pendulum alone; by hand: where the cart rests the angle moves as that of a
@@ -229,6 +230,37 @@ fn a_pole_of_the_fields_is_a_pole() {
         ranks,
         [whole, ("p", true, true), ("q", true, false), ("r", false, true), ("none", false, false)]
     );
+}
+
+/// Where a force is written with an absolute value its derivative has a part on either side, and a set on the kink lies in none of them: there
+/// is no rank, which is not as expected, and all that is written says why.
+#[test]
+fn a_set_without_a_rank_is_not_as_expected() {
+    let text = "system \"A vehicle on a kink\"\nstate vy, r\nparam mu = 1/2 unknown\nlet slip = vy*5 + r*6\ndrift f\n  \
+        vy' = -mu*slip/(1 + abs(slip)) - 20*r\n  r' = -mu*slip/(1 + abs(slip))\noutput r\nsample\n  vy in [-1, 1]\n  \
+        r in [-1, 1]\n  mu in [1/5, 1]\nset \"straight driving\": vy = 0, r = 0\nset \"a turn\": vy = 0\n";
+    let folder = folder();
+    let file = write(&folder, "kink.proof", text);
+    let out = folder.path().join("out");
+    let verify = |more: &[&str]| {
+        let paths = [file.to_str().unwrap(), "--no-times", "--out", out.to_str().unwrap()];
+        palmistry(&[&["verify"], &paths[..], more].concat())
+    };
+    let output = verify(&["--json"]);
+    assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
+    let found = json(&output);
+    let ranks = found["files"][0]["ranks"].as_array().unwrap();
+    let expected: Vec<&Value> = ranks.iter().map(|rank| &rank["as_expected"]).collect();
+    assert_eq!((&found["ok"], expected), (&json!(false), vec![&json!(true), &json!(false), &json!(true)]));
+    let why = ranks[1]["not_decided"].as_str().unwrap();
+    assert!(why.len() > 20, "{why}");
+    let page = std::fs::read_to_string(out.join("index.html")).unwrap();
+    let row = page.split("straight driving").nth(1).unwrap().split("</tr>").next().unwrap();
+    // names are symbols there: the reason up to the first of them
+    assert!(row.contains("class=bad") && row.contains(why.split(" where").next().unwrap()), "{row}");
+    let text = String::from_utf8(verify(&[]).stdout).unwrap();
+    let line = text.lines().find(|line| line.trim_start().starts_with("straight driving")).unwrap();
+    assert!(line.contains(why) && line.ends_with("not as expected"), "{line}");
 }
 
 /// The words of the new entries are names all the same.

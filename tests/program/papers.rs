@@ -216,6 +216,54 @@ fn what_a_rank_does_not_say() {
     assert_eq!(seen(&verified("hermann1977", &BY_DEFINITION)), [1, 1, 0]);
 }
 
+/// By hand. Tyres: on a straight course no slip makes a force, whose derivative by the friction has the slip's third power as a factor; r and ay still
+/// give the two states. Where the stiffnesses are unknown the steering moves the vehicle off the straight course. Bioreactor: X = 0 stays, so
+/// that every derivative is a multiple of X; at rest the derivatives of X, of its growth rate and of the rate of S are all there is.
+const EXAMPLES: [(&str, &str, &str, u64); 11] = [
+    ("tyre", "saturating.proof", "the whole sample box", 3),
+    ("tyre", "saturating.proof", "straight driving", 2),
+    ("tyre", "saturating.proof", "the front axle without slip", 3),
+    ("tyre", "saturating.proof", "a turn without sideslip", 3),
+    ("tyre", "linear.proof", "the whole sample box", 4),
+    ("tyre", "linear.proof", "steering away from straight driving", 4),
+    ("bioreactor", "biomass.proof", "the whole sample box", 5),
+    ("bioreactor", "biomass.proof", "washed out", 1),
+    ("bioreactor", "biomass.proof", "no substrate", 5),
+    ("bioreactor", "biomass.proof", "steady state", 3),
+    ("bioreactor", "substrate.proof", "the whole sample box", 4),
+];
+
+/// The two papers that are examples are verified as expected, with a picture each.
+#[test]
+fn the_examples_of_papers() {
+    let mut found = Vec::new();
+    for (paper, refuted) in [("tyre", ["friction.linear"]), ("bioreactor", ["growth.linear"])] {
+        let (out, path) = (folder(), format!("examples/papers/{paper}"));
+        let to = out.path().to_str().unwrap();
+        let output = palmistry(&["verify", &path, "--json", "--no-times", "--out", to]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let answer = json(&output);
+        assert_eq!(answer["ok"], true);
+        for file in answer["files"].as_array().unwrap() {
+            assert_eq!(file["left_out"], serde_json::json!([]));
+            for set in file["ranks"].as_array().unwrap() {
+                let name = |value: &Value| value.as_str().unwrap().to_owned();
+                let rank = only_rank(&set["rank_histogram"]) as u64;
+                found.push((paper, name(&file["file"]), name(&set["set"]), rank));
+            }
+            let claims = file["claims"].as_array().unwrap().iter();
+            let wrong: Vec<&str> = claims
+                .filter(|claim| claim["verdict"] == "refuted")
+                .map(|claim| claim["id"].as_str().unwrap())
+                .collect();
+            assert!(wrong.is_empty() || wrong == refuted, "{wrong:?}");
+        }
+        assert_eq!(seen(&answer)[0], 2, "a map for each file");
+    }
+    let expected = EXAMPLES.map(|(paper, file, set, rank)| (paper, file.to_owned(), set.to_owned(), rank));
+    assert_eq!(found, expected);
+}
+
 /// Every claim of the short papers has the verdict that its file expects; those that are refuted on purpose are these.
 #[test]
 fn the_claims_hold_and_the_wrong_ones_do_not() {

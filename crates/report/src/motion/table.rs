@@ -79,7 +79,7 @@ pub(super) fn ends(observed: &Observed<'_>) -> Markup {
                                 } }
                                 td.n { (last.deviations.get(place).map_or("-".to_owned(), |own| bound_in_words(*own))) }
                             }
-                        } @else { td colspan=(1 + names.len() * if known { 3 } else { 2 }) { "it found nothing" } }
+                        } @else { td colspan=(1 + names.len() * if known { 3 } else { 2 }) { "no estimate" } }
                         td.n {
                             @if answer.track.updates.is_empty() { (tested(answer)) }
                             @else { (converged) " of " (answer.track.updates.len()) }
@@ -109,7 +109,7 @@ fn tested(answer: &Answer) -> String {
     match answer.track.innovations {
         Some(own) if own.fits => format!("innovations pass ({})", p_in_words(own.probability)),
         Some(own) => format!("innovations fail ({})", p_in_words(own.probability)),
-        None => "nothing tests it".to_owned(),
+        None => "not tested".to_owned(),
     }
 }
 
