@@ -19,6 +19,19 @@ pub(super) fn conditions(written: &[String], looks: &Looks) -> Markup {
     }
 }
 
+/// A condition as the program writes it, `vy*5 + r*6 > 0`, the number of each term before its letters, as people write them.
+pub(super) fn numbers_first(condition: &str) -> String {
+    let term = |term: &str| match term.rsplit_once('*') {
+        Some((letters, number))
+            if number.bytes().all(|c| c.is_ascii_digit()) && !letters.contains(['(', ')', '/', '-', ',']) =>
+        {
+            format!("{number}*{letters}")
+        }
+        _ => term.to_owned(),
+    };
+    condition.split(' ').map(term).collect::<Vec<_>>().join(" ")
+}
+
 /// Several, between commas.
 pub(super) fn listed<T: AsRef<str>>(texts: &[T], looks: &Looks) -> Markup {
     html! {
@@ -104,6 +117,12 @@ mod tests {
         assert!(!of("Lf").contains("<mrow>") && !of("Lg x").contains("<mrow><mi>g"));
         let unknown = |text: &str| lie_derivative(text, None, &none).into_string();
         assert!(unknown("Lg x").contains("<mrow><mi>g") && !unknown("Lg + x").contains("<mrow><mi>g"));
+    }
+
+    #[test]
+    fn numbers_stand_before_letters() {
+        assert_eq!(numbers_first("vy*5 + r*6 > 0"), "5*vy + 6*r > 0");
+        assert_eq!(numbers_first("-vy*5 - x*y^2*60 != (r*6)"), "-vy*5 - 60*x*y^2 != (r*6)");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::entry::{explain, formula};
 use super::findings::ranks_in_words;
-use super::inline::{conditions, field_name, in_line, lie_derivative, listed, with_list};
+use super::inline::{conditions, field_name, in_line, lie_derivative, listed, numbers_first, with_list};
 use super::motions::unobservable_directions;
 use super::system::system_mathematics;
 use super::unknowns::unknowns;
@@ -242,6 +242,16 @@ fn without_rank(rank: &SetRank, why: &str, looks: &Looks) -> Markup {
         Err(RankError::Codistribution(CodistributionError::Pole { divisor })) => html! {
             "undefined at every state there: a division by " span.f { (in_line(divisor, looks)) } " = 0"
         },
+        Ok(answer) if rank.is_undecided() && !answer.left_out.is_empty() => {
+            let (said, _) = why.split_once(" where ").unwrap_or((why, ""));
+            html! {
+                (said)
+                @for (place, part) in answer.left_out.iter().enumerate() {
+                    @if place > 0 { ", or" }
+                    " where " (conditions(&part.split(", ").map(numbers_first).collect::<Vec<_>>(), looks))
+                }
+            }
+        }
         _ => html! { (with_list(why, looks)) },
     }
 }

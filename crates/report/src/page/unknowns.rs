@@ -1,6 +1,6 @@
 //! What is observable generically, on the page: a sentence, and a table of the unknowns.
 
-use super::inline::{conditions, in_line};
+use super::inline::{conditions, in_line, numbers_first};
 use crate::ranks::generic::{generic_sentence, unknown_verdict};
 use maud::{Markup, html};
 use palmistry_lang::Looks;
@@ -19,11 +19,12 @@ pub(super) fn unknowns(ranks: &[SetRank], looks: &Looks) -> Markup {
 fn of_branch(branch: &BranchAnswer, looks: &Looks) -> Markup {
     let sentence = generic_sentence(&branch.generic);
     let mut letters = sentence.chars();
+    let written: Vec<String> = branch.conditions.iter().map(|one| numbers_first(one)).collect();
     let first = letters.next().map(|letter| letter.to_uppercase().to_string()).unwrap_or_default();
     html! {
         p {
             (first) (letters.as_str())
-            @if !branch.conditions.is_empty() { ", where " (conditions(&branch.conditions, looks)) }
+            @if !branch.conditions.is_empty() { ", where " (conditions(&written, looks)) }
             "."
         }
         // where everything is observable the sentence says so of each
