@@ -66,7 +66,10 @@ impl SetRank {
                 Err(format!("no state that was drawn there has a rank: {}", reasons.join(", ")))
             }
             Ok(answer) if self.is_undecided() => Err(match &answer.left_out[..] {
-                [] => "no state was found there at which the rank could be decided".to_owned(),
+                [] if answer.branches.is_empty() => "not decided: a rank is that of states at which what stands in abs, sign, min, max and roots has a \
+                     sign; none was found there, and at its zero such a function need not have a derivative"
+                    .to_owned(),
+                [] => "not decided: no state was found there that has a rank".to_owned(),
                 parts => {
                     let parts = parts.join(", or where ");
                     format!(
