@@ -245,13 +245,14 @@ fn without_rank(rank: &SetRank, why: &str, looks: &Looks) -> Markup {
         Ok(answer) if rank.is_undecided() && !answer.left_out.is_empty() => {
             let (said, _) = why.split_once(" where ").unwrap_or((why, ""));
             html! {
-                (said)
+                "not decided: " (said)
                 @for (place, part) in answer.left_out.iter().enumerate() {
                     @if place > 0 { ", or" }
                     " where " (conditions(&part.split(", ").map(numbers_first).collect::<Vec<_>>(), looks))
                 }
             }
         }
+        _ if rank.is_undecided() => html! { "not decided: " (why) },
         _ => html! { (with_list(why, looks)) },
     }
 }

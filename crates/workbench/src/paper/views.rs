@@ -66,15 +66,15 @@ impl SetRank {
                 Err(format!("no state that was drawn there has a rank: {}", reasons.join(", ")))
             }
             Ok(answer) if self.is_undecided() => Err(match &answer.left_out[..] {
-                [] if answer.branches.is_empty() => "not decided: a rank is that of states at which what stands in abs, sign, min, max and roots has a \
+                [] if answer.branches.is_empty() => {
+                    "a rank is that of states at which what stands in abs, sign, min, max and roots has a \
                      sign; none was found there, and at its zero such a function need not have a derivative"
-                    .to_owned(),
-                [] => "not decided: no state was found there that has a rank".to_owned(),
+                        .to_owned()
+                }
+                [] => "no state was found there that has a rank".to_owned(),
                 parts => {
                     let parts = parts.join(", or where ");
-                    format!(
-                        "not decided: the rank is that of parts of the states, and none was found there where {parts}"
-                    )
+                    format!("the rank is that of parts of the states, and none was found there where {parts}")
                 }
             }),
             Ok(answer) => Ok(answer),
