@@ -104,7 +104,7 @@ def arc(state, steps=60, step=0.025, turning=0.9):
     return np.array(path)
 
 
-figure, (plane, readings) = plt.subplots(1, 2, figsize=(8, 3.8))
+figure, (plane, ranges) = plt.subplots(1, 2, figsize=(8, 3.8))
 grid = np.linspace(-3, 3, 9)
 gx, gy = np.meshgrid(grid, grid)
 plane.quiver(gx, gy, -gy, gx, color="0.8", width=0.004)
@@ -113,11 +113,11 @@ for colour, start in (("C0", (2.0, 0.5, 2.0)), ("C1", (0.6, 1.2, 0.2))):
         path = arc(along(start, angle))
         plane.plot(path[:, 0], path[:, 1], style, color=colour)
         plane.plot(*path[0, :2], "o", color=colour, markersize=5)
-        readings.plot(0.025 * np.arange(len(path)), np.hypot(path[:, 0], path[:, 1]), style, color=colour, linewidth=3 - 0.4 * angle)
+        ranges.plot(0.025 * np.arange(len(path)), np.hypot(path[:, 0], path[:, 1]), style, color=colour, linewidth=3 - 0.4 * angle)
 plane.plot(0, 0, "k^")
 plane.annotate("beacon", (0, 0), (0.15, -0.45))
 plane.set(title="Six robots, and the unobservable direction", xlabel="x", ylabel="y", aspect="equal")
-readings.set(title="What they read", xlabel="time", ylabel="distance")
+ranges.set(title="What they read", xlabel="time", ylabel="distance")
 plt.show()
 
 # each path is the first one, rotated, and reads the same

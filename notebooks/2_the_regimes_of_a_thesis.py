@@ -100,12 +100,12 @@ plt.show()
 
 # %%
 same_rate = systems["same_rate"]
-seen = {}
+medians = {}
 for rate in ("1", "1/10", "1/100"):
     deviations = same_rate.rank(samples=400, at={"omega0": rate}).json["standard_deviations"]["of"]
-    seen[rate] = {row["state"]: row["median"] for row in deviations}
-    print(f"omega0 = {rate:6} standard deviation over the prior one: r1 {seen[rate]['r1']:10.1f}   r2 {seen[rate]['r2']:10.1f}")
-assert 30 < seen["1/100"]["r1"] / seen["1/10"]["r1"] < 300 and 30 < seen["1/100"]["r2"] / seen["1/10"]["r2"] < 300
+    medians[rate] = {row["state"]: row["median"] for row in deviations}
+    print(f"omega0 = {rate:6} standard deviation over the prior one: r1 {medians[rate]['r1']:10.1f}   r2 {medians[rate]['r2']:10.1f}")
+assert 30 < medians["1/100"]["r1"] / medians["1/10"]["r1"] < 300 and 30 < medians["1/100"]["r2"] / medians["1/10"]["r2"] < 300
 
 # on the set itself, where states are drawn that meet the equation exactly, two are lost
 floor = same_rate.rank(samples=100, where="omega0 = 0")

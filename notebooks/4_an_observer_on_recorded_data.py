@@ -41,21 +41,21 @@ times = np.linspace(0, 5, 101)
 speed, turning = 1 + 0.3 * np.sin(times), 0.6 * np.cos(0.8 * times)
 truth = drive(times, lambda t: 1 + 0.3 * np.sin(t), lambda t: 2.2 + 0.75 * np.sin(0.8 * t), (1.5, -1.0))
 ranges = np.hypot(*(truth[:, None, :2] - BEACONS).transpose(2, 0, 1))
-readings = ranges + np.random.Generator(np.random.PCG64(20)).normal(0, NOISE, ranges.shape)
+measured = ranges + np.random.Generator(np.random.PCG64(20)).normal(0, NOISE, ranges.shape)
 
 workplace = tempfile.TemporaryDirectory()
 folder = Path(workplace.name)
 
 
-def record(name, readings):
+def record(name, measured):
     """Writes a recording."""
     with open(folder / name, "w", encoding="utf-8") as file:
         file.write(",".join(["time", *NAMES, "v", "w"]) + "\n")
-        for row in np.column_stack([times, readings, speed, turning]):
+        for row in np.column_stack([times, measured, speed, turning]):
             file.write(",".join(f"{value:.9f}" for value in row) + "\n")
 
 
-record("drive.csv", readings)
+record("drive.csv", measured)
 print((folder / "drive.csv").read_text()[:330])
 
 # %% [markdown]
@@ -124,7 +124,7 @@ plt.show()
 # explain it.
 
 # %%
-wrong = readings * np.array([1, 1.02, 1])
+wrong = measured * np.array([1, 1.02, 1])
 record("drive.csv", wrong)
 found = observe(folder / "drive.toml")
 [update] = found.observers[0]["updates"]

@@ -271,7 +271,7 @@ class Rank(Answer):
 
 
 class Solutions(Answer):
-    """How many values of each unknown give the same outputs."""
+    """The number of solutions of each unknown: values that give the same outputs."""
 
     @property
     def unknowns(self) -> Table:
@@ -601,7 +601,7 @@ class Observation(Answer):
         """Deprecated: the former name of `measurements`."""
         import warnings
 
-        warnings.warn("Observation.readings is called measurements", DeprecationWarning, stacklevel=2)
+        warnings.warn("use Observation.measurements, which is the same", DeprecationWarning, stacklevel=2)
         return self.measurements
 
     @property

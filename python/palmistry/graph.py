@@ -81,7 +81,7 @@ def short(x):
     spend((length // 64) ** 2 // 64)
     return x if length < LONGEST else refuse("numbers of great length")
 def power(x, n):
-    """That of a fraction, whose length is told before it is made."""
+    """That of a fraction, whose length is known before it is made."""
     return x**n if (x.numerator.bit_length() + x.denominator.bit_length()) * abs(n) < LONGEST else refuse("numbers of great length")
 
 @cache

@@ -243,8 +243,8 @@ class System:
         return _asked(Rank, lambda: self._native.rank(*asked))
 
     def observability(self, *, globally: bool = False) -> Table:
-        """Which states are observable: a row a state, name and verdict, generically; with `globally` also how many values give the same
-        outputs (infinite: infinitely many, 0: undecided), and whether that is 'proved' or 'computed'.
+        """Which states are observable: a row a state, name and verdict, generically; with `globally` also the number of solutions,
+        values that give the same outputs (infinite: infinitely many, 0: undecided), and whether that is 'proved' or 'computed'.
 
         >>> import palmistry
         >>> tanks = palmistry.System.parse('''
@@ -328,7 +328,7 @@ class System:
         return _asked(SingularSet, lambda: _native.drops(self._native, seed))
 
     def global_(self, work: int | None = None, *, functions: bool = False) -> Solutions:
-        """How many values of each unknown give the same outputs: one, finitely many over the complex numbers, or infinitely many. For rational systems, generically.
+        """Whether each unknown is globally or locally identifiable (observable) or not: how many solutions it has, one, finitely many over the complex numbers, or infinitely many. For rational systems, generically.
 
         work: how much may be done, in products of residues; what takes more is undecided. functions: also generators of all identifiable functions.
 

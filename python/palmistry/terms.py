@@ -96,7 +96,7 @@ def total(terms: list[Term]) -> Term:
 
 
 def _has_summands(text: str) -> bool:
-    """Whether a text has a plus or minus outside of brackets, beside a sign at its beginning."""
+    """Whether a text has a plus or minus outside of brackets, beside a leading sign."""
     depth = 0
     for place, sign in enumerate(text):
         depth += (sign in "([{") - (sign in ")]}")

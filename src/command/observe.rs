@@ -232,7 +232,7 @@ impl Observe {
 
 /// What is left of a command whose studies are cut.
 enum Sharded {
-    /// A shard was done, or those were told that are missing.
+    /// A shard was done, or those that are missing were printed.
     Done(Status),
     Merged(Studied),
 }

@@ -44,7 +44,7 @@ use std::sync::{Arc, Mutex, PoisonError};
   palmistry rank mysystem.proof --samples 100000
   palmistry rank mysystem.proof --at omega0=0              on the set where omega0 is zero
   palmistry rank mysystem.proof --where 'sin(phi1) = 0'    on the set of a condition
-  palmistry rank mysystem.proof --singular-set             the states at which the rank drops, with a proof that there are no others
+  palmistry rank mysystem.proof --singular-set             the rank-deficient states, with a proof that there are no others
   palmistry rank mysystem.proof --global                   each unknown globally, locally or not identifiable, with the number of solutions
   palmistry rank mysystem.proof --global --at omega0=0     and the rank where omega0 is zero
   palmistry rank mysystem.proof --functions                generators of all identifiable functions
@@ -141,7 +141,7 @@ pub(crate) struct Rank {
 #[derive(Clone)]
 enum SoFar {
     Nothing,
-    /// Of each branch of the conditions of a file, in their order, what holds at almost all of its states.
+    /// Of each branch of the conditions of a file, in their order, what holds generically on it.
     Rank(String, Vec<GenericOnBranch>),
     Values(Box<GlobalAnswer>),
     Drops(Box<DropAnswer>),
@@ -509,7 +509,7 @@ fn status_of(values: &GlobalAnswer) -> Status {
 
 /// Why there is no answer.
 enum Ended {
-    /// It takes more than a question may: what was found before is told.
+    /// It takes more than a question may: what was found before is printed.
     CutOff(String),
     /// Something cannot be used.
     Unusable(Report),

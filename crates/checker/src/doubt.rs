@@ -142,7 +142,7 @@ pub enum Doubt {
     NotShownAnnihilated { state: usize, row: usize, vector: usize },
     #[error("a rank of {found} does not say this of a claim of {claimed}")]
     OtherRank { found: usize, claimed: usize },
-    #[error("the rank is {found} at another state, and not {stated} at almost all")]
+    #[error("the rank is {found} at another state, and not generically {stated}")]
     GreaterRank { found: usize, stated: usize },
     #[error("the digest is another: the file was changed")]
     DigestDiffers,

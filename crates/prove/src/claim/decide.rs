@@ -355,7 +355,7 @@ fn attempt(
     }
     if let Some(asked) = Asking::of(system, &left, &right, equation.relation) {
         let asked = asked?;
-        let kept = Evidence::Unchecked("how many values there are is not found by evaluation".to_owned());
+        let kept = Evidence::Unchecked("the number of solutions is not found by evaluation".to_owned());
         notes.evidence.push(kept);
         let text = |expr: &Expr| in_one_line(&system.source, &expr.span);
         let name = text(if asked.is_left { &equation.left } else { &equation.right });

@@ -394,11 +394,13 @@ pub fn findings_text(found: &Findings) -> String {
     }
     let failed = found.outcomes().filter(|outcome| !outcome.ok).count();
     let (claims, counts) = (counted(found.outcomes().count(), "claim"), counts_text(found.outcomes()));
-    let _ = writeln!(out, "{claims}: {counts}; {failed} not as expected");
+    let colon = if counts.is_empty() { "" } else { ": " };
+    let _ = writeln!(out, "{claims}{colon}{counts}; {failed} not as expected");
     if numbering.count() > 0 {
         let equations = numbering.equations(found.outcomes());
         let without = equations.iter().filter(|equation| equation.entries.is_empty()).count();
-        let _ = writeln!(out, "{} numbered equations, {without} of them without an entry", equations.len());
+        let equations = counted(equations.len(), "numbered equation");
+        let _ = writeln!(out, "{equations}, {without} of them without an entry");
     }
     if found.interrupted {
         let _ = writeln!(out, "interrupted: this is what was done until then");

@@ -165,7 +165,7 @@ impl Paper {
             let problem = Problem::new(Code::Paper, &named.span(), message, "named here");
             Err(match nearest(named.get_ref(), files.iter().map(String::as_str)) {
                 Some(near) => problem.help(format!("perhaps you meant '{near}'")),
-                None => problem.help("files are named as seen from the folder of the paper"),
+                None => problem.help("files are named relative to the folder of the paper"),
             }
             .locate(&name, &text))
         };
