@@ -18,9 +18,9 @@ export class Answers {
         panel.append(...Object.values(this.blocks));
         this.results = element("div");
         const dear = [
-            ["Globally?", "how many values of each unknown give the same outputs", { ask: "values" }],
+            ["Globally?", "each unknown globally, locally or not identifiable, with the number of solutions", { ask: "values" }],
             ["Identifiable functions", "generators of all functions of the unknowns that have one value", { ask: "values", functions: true }],
-            ["Where the rank drops", "the exact set, with a proof that it drops nowhere else", { ask: "drops" }],
+            ["Singular set", "the rank-deficient states, with a proof that there are no others", { ask: "drops" }],
             ["At 1000 states", "the certified rank at 1000 sampled states", { ask: "rank", samples: 1000 }],
         ];
         const buttons = dear.map(([name, title, question]) => element("button", { title, onclick: () => this.more(name, question) }, name));

@@ -32,7 +32,7 @@ export class MapPanel {
         this.line = element("div");
         this.lineAsked = element("div", { class: "row" });
         panel.append(
-            element("p", { class: "hint" }, "How well the worst unknown, or one, is observable: its standard deviation over its prior one, where each Lie derivative is measured up to its own range (computed, not certified). Light is well; dark is badly; green is unobservable or not to be told from it; white is where something does not exist, as at a pole. Where the pointer rests the rank is decided, by exact arithmetic at that very state."),
+            element("p", { class: "hint" }, "How well the worst unknown, or one, is observable: its standard deviation over its prior one, where each Lie derivative is measured up to its own range (computed, not certified). Light is well; dark is badly; green is unobservable or not distinguishable from it; white is where something is undefined, as at a singularity. Where the pointer rests the rank is decided, by exact arithmetic at that very state."),
             this.settings, this.sliders, this.failure,
             element("div", { class: "axes" }, this.up, element("div", { class: "picture" }, this.canvas), this.across),
             element("div", { class: "scale", "aria-hidden": "true" }, ["1", "10", "100", "1000 and more", "infinite"].map(text => element("span", {}, text))),
@@ -230,7 +230,7 @@ export class MapPanel {
         const at = this.state();
         const value = values[cell];
         const name = worst[cell] == null || !this.names ? "" : this.of.value ? ` of ${this.of.value}` : ` of ${this.names[worst[cell]]}, the worst`;
-        const told = value == null ? "something does not exist there, as at a pole" : value < 0 ? `unobservable, or not to be told from it${name}` : `standard deviation over the prior one ${shown(value)}${name}`;
+        const told = value == null ? "something is undefined there, as at a singularity" : value < 0 ? `unobservable, or not distinguishable from it${name}` : `standard deviation over the prior one ${shown(value)}${name}`;
         this.read.textContent = `${x} = ${shown(at[x])}, ${y} = ${shown(at[y])}: ${told}`;
     }
 
@@ -252,7 +252,7 @@ export class MapPanel {
             const found = await ask("answer", { ask: "state", ...this.draft.question, at: this.state() }, { signal });
             if (place !== this.place) return;
             const how = found.certified ? "certified" : "computed";
-            this.read.textContent = `${before}; ${found.rank == null ? "there is no rank: a pole, or not decided" : `rank ${found.rank} of ${found.dimension} (${how})`}`;
+            this.read.textContent = `${before}; ${found.rank == null ? "there is no rank: a singularity, or not decided" : `rank ${found.rank} of ${found.dimension} (${how})`}`;
         } catch (error) {
             if (error.name !== "AbortError" && place === this.place) this.read.textContent = `${before}; ${error.message}`;
         }
@@ -285,7 +285,7 @@ export class MapPanel {
             const missing = found.names.filter((_, place) => found.values.some(all => all && all[place] < 0));
             this.line.replaceChildren(
                 chart({ curves, x: zero ? `distance of ${moving} from where ${zero} is zero` : `one over ${moving}`, y: "standard deviation / prior", log: [true, true], label: "Standard deviations along the line" }),
-                element("p", { class: "hint" }, missing.length ? `Where a curve of ${missing.join(", ")} ends it is infinite or not to be told.` : ""));
+                element("p", { class: "hint" }, missing.length ? `Where a curve of ${missing.join(", ")} ends it is infinite or not distinguishable from that.` : ""));
         } catch (error) {
             if (drawing === this.drawing) this.line.replaceChildren(error.name === "AbortError" ? "stopped" : refusal(error));
         }

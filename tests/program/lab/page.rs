@@ -156,8 +156,8 @@ fn a_model_is_imported_stopped_and_linked() {
     browser.until("document.getElementById('running').hidden");
     browser.write(PENDULUM);
     browser.until(TOLD);
-    browser.value("[...document.querySelectorAll('#answers-more button')].find(one => one.textContent === 'Where the rank drops').click()");
-    browser.until("document.querySelector('[data-asked=\"Where the rank drops\"] pre').textContent.includes('generic rank 2 of 2')");
+    browser.value("[...document.querySelectorAll('#answers-more button')].find(one => one.textContent === 'Singular set').click()");
+    browser.until("document.querySelector('[data-asked=\"Singular set\"] pre').textContent.includes('generic rank 2 of 2')");
     browser.click("#link");
     browser.until("location.hash.startsWith('#text=')");
     let (link, text) =
@@ -308,12 +308,12 @@ fn keys_alone_and_names_for_who_listens() {
     browser.key("ArrowLeft", 37, 0);
     for _ in 0..10 {
         browser.key("Tab", 9, 0);
-        if browser.text(focus) == "Where the rank drops" {
+        if browser.text(focus) == "Singular set" {
             break;
         }
     }
     browser.key("Enter", 13, 0);
-    browser.until("document.querySelector('[data-asked=\"Where the rank drops\"] pre').textContent.includes('generic rank')");
+    browser.until("document.querySelector('[data-asked=\"Singular set\"] pre').textContent.includes('generic rank')");
     open(&mut browser, "martinelli2005/two_beacons.proof");
     for tab in ["answers", "map", "motion", "observe", "models"] {
         browser.click(&format!("#tab-{tab}"));
