@@ -275,6 +275,30 @@ fn links_lead_somewhere() {
     assert!(length < 8000, "the README has {length} bytes");
 }
 
+/// The pages that say which compiler is needed name the one of the manifest.
+#[test]
+fn the_compiler_is_that_of_the_manifest() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let manifest = std::fs::read_to_string(root.join("Cargo.toml")).expect("a manifest");
+    let (_, rest) = manifest.split_once("rust-version = \"").expect("a version");
+    let version = rest.split('"').next().expect("its end");
+    for (page, words) in
+        [("README.md", "You need Rust {}"), ("book/src/introduction.md", "A Rust toolchain ({} or newer)")]
+    {
+        let text = std::fs::read_to_string(root.join(page)).expect("a page");
+        let words = words.replace("{}", version);
+        assert!(text.contains(&words), "{page} does not say '{words}'");
+    }
+    for path in crate::pages::pages() {
+        let text = std::fs::read_to_string(&path).expect("a page");
+        for (before, _) in text.split(" or newer").zip(text.split(" or newer").skip(1)) {
+            let named = before.rsplit([' ', '(']).next().expect("a word");
+            let is_rust = before.lines().last().is_some_and(|line| line.contains("Rust"));
+            assert!(!is_rust || named == version, "{}: Rust {named}, and {version} is needed", path.display());
+        }
+    }
+}
+
 /// What a heading is called in a link.
 fn anchor(heading: &str) -> String {
     let words = heading.trim_start_matches('#').trim().to_lowercase();

@@ -65,14 +65,13 @@ const OLD: &[(&str, &str)] = &[
 ];
 
 /// Where an old word stays: the end of a file's path, a part of the line, and why.
-const KEPT: [(&str, &str, &str); 8] = [
+const KEPT: [(&str, &str, &str); 7] = [
     ("crates/scenes/src/scene/keys.rs", "blind", "the old name of a key, which is still read"),
     ("crates/scenes/src/scene/mod.rs", "blind", "the old name of a key, which is still read"),
     ("book/src/scenes.md", "and `blind`; the old names are still read", "it says what a key was called"),
     ("crates/report/src/motion/section.rs", "long enough to be seen", "a length on the screen"),
     ("book/src/poses.md", "\"for almost all combinations", "words of the thesis"),
     ("proofs/moll2002/chapter3_sentences.proof", "printed \"for almost all", "words of the thesis"),
-    ("python/palmistry/answers.py", "readings", "the old name of a property, which is still there"),
     ("book/src/python_api.md", "### `.readings`", "the old name of a property, which is still there"),
 ];
 
