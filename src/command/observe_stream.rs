@@ -65,7 +65,8 @@ pub(super) fn observe(scene: Scene, form: Form, no_times: bool) -> miette::Resul
         return Err(Unusable::report(Code::Place, format!("cannot write to standard output: {error}"), help));
     }
     if let Some(why) = &end.cut_off {
-        note(&format!("cut off: {why}; {} windows are answered", end.windows));
+        let windows = if end.windows == 1 { "1 window is" } else { &format!("{} windows are", end.windows) };
+        note(&format!("cut off: {why}; {windows} answered"));
     }
     if let Some(fault) = end.fault {
         let help = "mend the rows, or let faulty rows be skipped (on_fault = \"skip\" in the scene)";

@@ -1,7 +1,7 @@
 //! `palmistry rank`: is the state observable from the outputs?
 
 use super::arguments::Wanted;
-use super::interrupt::{INTERRUPTED, begin_to_tell, nothing_found, watched};
+use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, nothing_found, watched};
 use super::output::{Files, Form, progress};
 use super::reparametrise::reparametrisation;
 use super::shards::{NO_WHOLE, Parts, Shards};
@@ -9,20 +9,21 @@ use super::{Status, Unusable};
 use clap::{ArgGroup, Args};
 use miette::Report;
 use palmistry::checker::VerdictFile;
-use palmistry::drops::{DropAnswer, where_it_drops_telling};
+use palmistry::drops::{DropAnswer, singular_set_at_once, where_it_drops_telling};
 use palmistry::evidence::rank_records;
 use palmistry::file::note;
 use palmistry::observability::SOLUTIONS_WORK;
 use palmistry::report::{
-    StateTableWriter, TableForm, accessibility_json, accessibility_text, drops_json, drops_page, drops_text,
-    global_json, global_text, rank_json, rank_so_far_json, rank_so_far_text, rank_text,
+    RankTextParts, SingularSet, StateTableWriter, TableForm, accessibility_json, accessibility_text,
+    drops_json, drops_page, drops_text, global_json, global_text, rank_json, rank_so_far_json,
+    rank_so_far_text, rank_text_with, singular_set_json, unobservable_directions_json,
 };
 use palmistry::sweep::{
     AccessibilityAnswer, GenericOnBranch, GlobalAnswer, MOST_DIGITS, RankError, RankPart, RankPreparation,
     SolutionsWanted, StateRow, StateTable, answer_accessibility_telling, answer_solutions_telling, shard_of,
 };
 use palmistry::system::Code;
-use palmistry::{RankQuestion, System};
+use palmistry::{RankQuestion, System, answer_rank};
 use serde_json::{Value, json};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -108,11 +109,11 @@ pub(crate) struct Rank {
     /// which are counted over the complex numbers), or not at all. Generically, by Groebner bases at random points modulo random primes; each number says whether it
     /// is proved or computed. Where rates or outputs are not rational functions, one value is found and more are undecided. States are sampled only where another option asks for it; conditions
     /// ('--at', '--where') concern those states, and not these numbers.
-    #[arg(long, conflicts_with_all = ["shard", "missing"])]
+    #[arg(long)]
     global: bool,
     /// As '--global', and then generators of all identifiable functions: rational functions of the unknowns that have one value for given
     /// outputs, such as k1 + k2 and k1*k2 where k1 and k2 can be exchanged. Every other such function is a rational function of these.
-    #[arg(long, conflicts_with_all = ["shard", "missing"])]
+    #[arg(long)]
     functions: bool,
     /// With '--global' and '--functions': how much work may be done, in products of residues; what takes more is undecided.
     #[arg(long, default_value_t = SOLUTIONS_WORK, value_name = "N", requires = "counted")]
@@ -162,6 +163,11 @@ impl Printed {
     fn with(mut self, values: &GlobalAnswer) -> Printed {
         self.object["global"] = global_json(values);
         Printed { text: format!("{}\n\n{}", global_text(values).trim_end(), self.text), ..self }
+    }
+
+    /// Numbers of solutions alone.
+    fn of_values(values: &GlobalAnswer) -> Printed {
+        Printed { object: global_json(values), text: global_text(values) }
     }
 }
 
@@ -259,9 +265,11 @@ impl Rank {
         let form = Form::of(self.json);
         let is_counted = self.global || self.functions;
         if is_counted && !self.asks_for_ranks() {
+            let mut own = system.clone();
             let answer = self.values(system, &|answer| known(SoFar::Values(Box::new(answer))))?;
+            known(SoFar::Values(Box::new(answer.clone())));
+            let printed = self.with_directions(&mut own, &answer);
             begin_to_tell();
-            let printed = Printed { object: global_json(&answer), text: global_text(&answer) };
             return Ok(Answered { files: Files::default(), printed, status: status_of(&answer) }.print(form)?);
         }
         let first = if self.singular_set {
@@ -293,6 +301,7 @@ impl Rank {
         let files = [&self.verdicts, &self.reparametrise, &self.table, &self.shards.merge];
         self.singular_set
             || self.accessible
+            || self.shards.are_asked()
             || self.samples.is_some()
             || self.order.is_some()
             || self.digits.is_some()
@@ -300,10 +309,47 @@ impl Rank {
             || files.into_iter().any(Option::is_some)
     }
 
+    /// Numbers of solutions, then what is identifiable of unknowns with infinitely many and the directions along which they change, then the singular
+    /// set. Where these cannot be decided, the numbers alone.
+    fn with_directions(&self, system: &mut System, values: &GlobalAnswer) -> Printed {
+        let mut printed = Printed::of_values(values);
+        if interrupted() || values.interrupted {
+            return printed;
+        }
+        let question =
+            RankQuestion { samples: 0, seed: self.seed, interrupt: &INTERRUPTED, ..Default::default() };
+        let mut anew = system.clone();
+        let Ok(answer) = answer_rank(system, &question) else { return printed };
+        let singular_set = self.singular_set_at_once(&mut anew);
+        printed.object["unobservable_directions"] = unobservable_directions_json(&answer);
+        printed.object["singular_set"] = singular_set_json(singular_set.as_ref());
+        let parts = RankTextParts {
+            global: Some(values),
+            without_table: true,
+            singular_set: singular_set.as_ref(),
+            details: self.details,
+        };
+        Printed { text: rank_text_with(&answer, &parts), ..printed }
+    }
+
+    /// Where the rank drops, as far as that is decided at once; `None` where the question is about other states than all, or the work was interrupted.
+    fn singular_set_at_once(&self, system: &mut System) -> Option<SingularSet> {
+        let is_of_all = self.at.is_empty() && self.conditions.is_empty() && self.order.is_none();
+        if !is_of_all || interrupted() {
+            return None;
+        }
+        let found = singular_set_at_once(system, self.seed, &INTERRUPTED);
+        (!interrupted()).then(|| match found {
+            Ok(Some(answer)) => SingularSet::Found(Box::new(answer)),
+            Ok(None) => SingularSet::TooMuchWork,
+            Err(why) => SingularSet::NotAsked(why),
+        })
+    }
+
     /// The rank at sampled states, or the dual question.
     fn ranks(&self, system: &mut System, known: &dyn Fn(SoFar)) -> Result<Step, Ended> {
         let fixed: BTreeMap<_, _> =
-            system.given_values(&self.at).map_err(Report::from)?.into_iter().collect();
+            system.given_values(&self.at).map_err(Unusable::given)?.into_iter().collect();
         let samples = self.samples.unwrap_or(RankQuestion::default().samples);
         let bar = progress(samples, "sampling states");
         let question = &RankQuestion {
@@ -344,6 +390,9 @@ impl Rank {
             prepared.map_err(Ended::from)
         };
         if let (Some(shard), Some(folder)) = (self.shards.shard, &self.shards.part) {
+            if self.global || self.functions {
+                note("numbers of solutions do not depend on states, and parts have none: --merge adds them");
+            }
             let done = parts.do_shard(shard, folder, self.table.as_deref(), form, |files| {
                 let states = shard_of(samples, shard.number, shard.of);
                 bar.set_length(states.end - states.start);
@@ -354,6 +403,7 @@ impl Rank {
             });
             return Ok(Step::Told(done?));
         }
+        let mut anew = system.clone();
         let (mut files, prepared) = (Files::default(), prepare(system)?);
         let parts = match &self.shards.merge {
             Some(folder) => parts.all(folder)?,
@@ -380,14 +430,21 @@ impl Rank {
             files.text_or(path, written.as_ref().map(|found| found.text.clone()).map_err(String::clone));
             written
         });
+        let singular_set = self.singular_set_at_once(&mut anew);
         let mut object = rank_json(&answer);
+        object["singular_set"] = singular_set_json(singular_set.as_ref());
         if let Some(Ok(found)) = &written {
             object["reparametrised"] = json!({ "claims": found.claims, "proved": found.proved });
         }
-        let text = match &written {
-            Some(Ok(found)) => format!("{}\n{}", rank_text(&answer, self.details), found.in_words()),
-            _ => rank_text(&answer, self.details),
+        let parts = RankTextParts {
+            singular_set: singular_set.as_ref(),
+            details: self.details,
+            ..RankTextParts::default()
         };
+        let mut text = rank_text_with(&answer, &parts);
+        if let Some(Ok(found)) = &written {
+            text += &format!("\n{}", found.in_words());
+        }
         let status =
             if answer.interrupted() || answer.cut_off() { Status::CutOff } else { Status::AsExpected };
         Ok(Step::Answered(Answered { files, printed: Printed { object, text }, status }))

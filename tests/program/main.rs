@@ -5,6 +5,7 @@ mod common;
 
 mod appendix;
 mod benchmarks;
+mod columns;
 mod coq;
 mod damaged;
 mod editors;

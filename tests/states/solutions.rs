@@ -270,10 +270,46 @@ fn the_command_tells_each_unknown() {
     let text = palmistry(&["rank", file, "--global", "--at", "x=1", "--samples", "5"]);
     let text = String::from_utf8(text.stdout).unwrap();
     assert!(text.contains("globally observable") && text.contains("sampled states"), "{text}");
-    assert_eq!(
-        palmistry(&["rank", file, "--global", "--shard", "1/2", "--part", "p"]).status.code(),
-        Some(2)
-    );
+    // the numbers do not depend on states: parts have none, and a merge adds them
+    let parts = folder.path().join("parts");
+    let parts = parts.to_str().unwrap();
+    let asked = ["rank", file, "--global", "--samples", "20", "--no-times"];
+    for shard in ["1/2", "2/2"] {
+        let done = palmistry(&[&asked[..], &["--shard", shard, "--part", parts]].concat());
+        assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
+        assert!(String::from_utf8_lossy(&done.stderr).contains("--merge"), "{done:?}");
+    }
+    let merged = palmistry(&[&asked[..], &["--merge", parts]].concat());
+    assert_eq!(merged.status.code(), Some(0), "{}", String::from_utf8_lossy(&merged.stderr));
+    assert_eq!(String::from_utf8_lossy(&merged.stdout), String::from_utf8_lossy(&palmistry(&asked).stdout));
+}
+
+/// Numbers of solutions, and then what is identifiable, along what nothing changes, and where the rank drops. By hand: a*b is
+/// identifiable, (a, b) moves along a d/da - b d/db, and the rank drops where x or k is zero, at any of the others.
+#[test]
+fn numbers_are_followed_by_directions_and_the_singular_set() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("s.proof");
+    std::fs::write(&file, "system \"s\" state x param k, a, b unknown drift f x' = k^2*x + a*b output x")
+        .unwrap();
+    let file = file.to_str().unwrap();
+    for how in ["--global", "--functions"] {
+        let text = String::from_utf8(palmistry(&["rank", file, how]).stdout).unwrap();
+        let place = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part} in {text}"));
+        let places =
+            ["2 solutions", "identifiable combinations of", "unobservable direction", "singular set"];
+        assert!(places.map(place).is_sorted(), "{text}");
+        let found = json(&palmistry(&["rank", file, how, "--json"]));
+        assert_eq!(found["unobservable_directions"]["functions"][0]["text"], "a*b", "{found}");
+        assert_eq!(found["unobservable_directions"]["fields_missing"], 0, "{found}");
+        let sets: Vec<&str> = found["singular_set"]["sets"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|set| set["equations"][0].as_str().unwrap())
+            .collect();
+        assert!(sets.contains(&"k = 0"), "{found}");
+    }
 }
 
 #[derive(serde::Deserialize)]

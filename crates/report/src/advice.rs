@@ -1,5 +1,6 @@
 //! What courses of the palms are advised, as text with a block to paste into a scene, and as JSON.
 
+use crate::layout::counted;
 use palmistry_bodies::mechanics::moving::Course;
 use palmistry_scenes::{Advice, ExpectedBounds, Scene, TriedMotion};
 use serde_json::{Value, json};
@@ -30,8 +31,9 @@ fn prescribed(courses: &[Course; 2]) -> String {
 pub fn advice_text(scene: &Scene, advice: &Advice) -> String {
     let mut lines = vec![scene.title.clone()];
     lines.push(format!(
-        "{} motions of the palms tried; the body is held to the end in {}",
-        advice.tried, advice.held
+        "{} of the palms tried; the body is held to the end in {}",
+        counted(advice.tried, "motion"),
+        advice.held
     ));
     let touched = |motion: &TriedMotion| {
         let part = format!("{:.1} % of all normals touched", 100.0 * motion.coverage.fraction());
@@ -73,8 +75,9 @@ fn expected_lines(scene: &Scene, expected: &ExpectedBounds) -> Vec<String> {
     };
     vec![
         format!(
-            "in {} of {} windows all that is estimated is observable",
-            expected.observable_windows, expected.windows
+            "in {} of {} all that is estimated is observable",
+            expected.observable_windows,
+            counted(expected.windows, "window")
         ),
         format!("expected errors in the median window, {noise}: {}", bounds.join(", ")),
         format!("condition of the median window: {:.1e}", expected.condition),

@@ -68,7 +68,7 @@ impl Layout {
 }
 
 /// Columns of an answer that is for people and not searched.
-const COLUMNS: usize = 80;
+pub(crate) const COLUMNS: usize = 80;
 
 /// Adds a sentence, broken at 80 columns.
 pub(crate) fn prose(text: &str, out: &mut String) {
@@ -86,10 +86,42 @@ fn add(first: &str, hang: usize, text: &str, out: &mut String) {
     out.push('\n');
 }
 
+/// A text with its longer lines broken at 80 columns; what follows a break stands two columns to the right of the line's own begin. Only blanks are broken
+/// at: a name or a formula without any stays whole.
+pub(crate) fn in_columns(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for line in text.split_inclusive('\n') {
+        let (content, end) = line.strip_suffix('\n').map_or((line, ""), |content| (content, "\n"));
+        if content.chars().count() <= COLUMNS {
+            out.push_str(line);
+            continue;
+        }
+        let inner = content.trim_start();
+        let indent = content.len() - inner.len();
+        let layout = Layout { width: Some(COLUMNS), ..Layout::default() };
+        out.push_str(&layout.wrap(&" ".repeat(indent), indent + 2, inner));
+        out.push_str(end);
+    }
+    out
+}
+
+/// Whether a text fits on one line of 80 columns.
+pub(crate) fn fits_a_line(text: &str) -> bool {
+    text.chars().count() <= COLUMNS
+}
+
 /// A number of things: `1 output`, `2 outputs`.
 pub(crate) fn counted<N: std::fmt::Display + PartialEq + From<u8>>(count: N, noun: &str) -> String {
-    let end = if count == N::from(1) { "" } else { "s" };
-    format!("{count} {noun}{end}")
+    counted_in(count, noun, &format!("{noun}s"))
+}
+
+/// A number of things whose plural is not made with an `s`: `1 box`, `2 boxes`.
+pub(crate) fn counted_in<N: std::fmt::Display + PartialEq + From<u8>>(
+    count: N,
+    one: &str,
+    more: &str,
+) -> String {
+    format!("{count} {}", if count == N::from(1) { one } else { more })
 }
 
 #[cfg(test)]
@@ -107,6 +139,17 @@ mod tests {
         let formula = "x".repeat(60);
         assert_eq!(layout.wrap("  left ", 7, &formula).lines().count(), 1);
         assert_eq!(Layout::default().wrap("  left ", 7, text).lines().count(), 1);
+    }
+
+    #[test]
+    fn long_lines_are_broken_and_short_ones_kept() {
+        let long = ["word"; 30].join(" ");
+        let text = format!("a  b\n\n  {long}\n{}", "x".repeat(90));
+        let broken = in_columns(&text);
+        assert!(broken.starts_with("a  b\n\n  word ") && broken.ends_with(&"x".repeat(90)), "{broken}");
+        assert_eq!(broken.lines().filter(|line| line.starts_with("    word")).count(), 1, "{broken}");
+        assert_eq!(broken.split_whitespace().count(), text.split_whitespace().count());
+        assert_eq!(broken.lines().filter(|line| line.chars().count() > COLUMNS).count(), 1);
     }
 
     #[test]

@@ -79,9 +79,10 @@ pub use page::{forget_seconds, forget_times};
 #[doc(hidden)]
 pub use poses::{conjecture_json, conjecture_text, poses_json, poses_page, poses_text};
 pub use ranks::{
-    StateTableWriter, TableForm, accessibility_json, accessibility_text, design_json, design_text,
-    drops_json, drops_text, global_json, global_text, rank_json, rank_so_far_json, rank_so_far_text,
-    rank_text, unobservable_field_text,
+    RankTextParts, SingularSet, StateTableWriter, TableForm, accessibility_json, accessibility_text,
+    design_json, design_text, drops_json, drops_text, global_json, global_text, rank_json, rank_so_far_json,
+    rank_so_far_text, rank_text, rank_text_with, singular_set_json, unobservable_directions_json,
+    unobservable_field_text,
 };
 pub use recheck::{has_failed, recheck_json, recheck_text};
 #[doc(hidden)]

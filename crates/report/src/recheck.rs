@@ -1,5 +1,6 @@
 //! What a checker has found of the verdicts of a file.
 
+use crate::layout::counted;
 use palmistry_checker::{CheckedVerdict, Evidence, Finding, VerdictFile};
 use palmistry_io::foreign::shown;
 use serde_json::{Value, json};
@@ -45,18 +46,20 @@ pub fn recheck_text(checked: &[CheckedVerdict<'_>]) -> String {
         .map(|(count, word)| format!("{count} {word}"))
         .collect();
     let lines: Vec<String> = checked.iter().map(verdict_line).collect();
-    format!("{}\n{} verdicts: {}", lines.join("\n"), checked.len(), counts.join(", "))
+    format!("{}\n{}: {}", lines.join("\n"), counted(checked.len(), "verdict"), counts.join(", "))
 }
 
 fn finding_text(finding: &Finding) -> String {
     match finding {
         Finding::Confirmed { times: 1 } => "evaluated again".to_owned(),
         Finding::Shown(ground) => ground.to_string(),
-        Finding::Confirmed { times } => format!("evaluated again at {times} states"),
+        Finding::Confirmed { times } => format!("evaluated again at {}", counted(*times, "state")),
         Finding::Consistent { states: 0 } => {
             "it agrees with its own state, and no other was found".to_owned()
         }
-        Finding::Consistent { states } => format!("it agrees with its own state and with {states} others"),
+        Finding::Consistent { states } => {
+            format!("it agrees with its own state and with {}", counted(*states, "other"))
+        }
         Finding::HalfConfirmed(half) => half.to_string(),
         Finding::NotChecked(why) => why.to_string(),
         Finding::NotConfirmed(doubt) => doubt.to_string(),

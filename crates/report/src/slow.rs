@@ -1,6 +1,7 @@
 //! What slow palms determine of a body: text, JSON, and a page with the pictures of figures 3.6, 3.7 and 3.8 and the body in motion.
 
 use crate::document::document;
+use crate::layout::{counted, counted_in, in_columns};
 use crate::slow_observed::SlowObserved;
 use crate::slow_plot::{animation, curves, frames};
 use crate::slow_study::{number, study_json, study_section, study_text};
@@ -38,7 +39,7 @@ fn ways<'a>(observed: &SlowObserved<'a>) -> Vec<Way<'a>> {
     if let Some(found) = &answers.together {
         let kinks = match found.kinks.len() {
             0 => String::new(),
-            count => format!(" and {count} kinks of the curvature"),
+            count => format!(" and {} of the curvature", counted(count, "kink")),
         };
         let remark = format!(
             "order {}{kinks}, {:.2e} m residual of a contact; the measurements {} explained",
@@ -74,8 +75,8 @@ fn ways<'a>(observed: &SlowObserved<'a>) -> Vec<Way<'a>> {
                 observed.experiment.measurements.rows()
             ),
             None => format!(
-                "the denominator of 3.37 changes its sign {} times; e_f up to {:.1e} m, e_c up to {:.1e} m",
-                found.vanishing.len(),
+                "the denominator of 3.37 changes its sign {}; e_f up to {:.1e} m, e_c up to {:.1e} m",
+                counted(found.vanishing.len(), "time"),
                 greatest(&found.force_error),
                 greatest(&found.contact_error)
             ),
@@ -112,7 +113,7 @@ fn mean_radius(observed: &SlowObserved<'_>) -> f64 {
 pub fn slow_text(observed: &SlowObserved<'_>) -> String {
     let (experiment, answers) = (observed.experiment, observed.answers);
     let mut out = format!("{}\n", experiment.scene.title);
-    let _ = writeln!(out, "{} samples", experiment.measurements.rows());
+    let _ = writeln!(out, "{}", counted(experiment.measurements.rows(), "sample"));
     if let Some(truth) = &experiment.truth {
         let _ =
             writeln!(out, "the motion: {}; jumps: {}", truth.trajectory.ended, truth.trajectory.jumps.len());
@@ -136,7 +137,13 @@ pub fn slow_text(observed: &SlowObserved<'_>) -> String {
     }
     if answers.together.is_none() {
         out.push_str(
-            "batch estimate of all measurements: no start could be followed; nothing is recovered\n",
+            "batch estimate of all measurements: no start could be followed; nothing is recovered\ntry next: \
+             slower palms or more samples, so that less happens between two of them, or a smooth convex body\n",
+        );
+    } else if !answers.explained {
+        out.push_str(
+            "try next (residuals not explained): more 'noise' or 'resolution' of the sensors if they have it, or a smooth convex \
+             body, as the model takes it to be\n",
         );
     }
     if !answers.jumps.is_empty() {
@@ -156,7 +163,7 @@ pub fn slow_text(observed: &SlowObserved<'_>) -> String {
     if observed.interrupted {
         out.push_str("interrupted: this is what was done until then\n");
     }
-    out
+    in_columns(&out)
 }
 
 /// Jumps in one line.
@@ -179,7 +186,12 @@ pub(super) fn jumps_in_words(answers: &SlowAnswers) -> String {
 /// What 3.48 and 3.49 say of both arrangements.
 fn arrangements_in_words(both: &[Arrangement; 2]) -> String {
     let one = |name: &str, at: &Arrangement| {
-        format!("{name} {:.2e} m^2 over {} patches, E {:.2e}", at.area, at.patches, at.error())
+        format!(
+            "{name} {:.2e} m^2 over {}, E {:.2e}",
+            at.area,
+            counted_in(at.patches, "patch", "patches"),
+            at.error()
+        )
     };
     format!("{}; {}", one("as found", &both[0]), one("the thesis's way, restarted at the jumps,", &both[1]))
 }

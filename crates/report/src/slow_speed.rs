@@ -1,5 +1,6 @@
 //! Speed against accuracy of all ways to a slow body's shape, as a picture: a mark a row of a study, lines over the numbers of samples.
 
+use crate::layout::counted;
 use palmistry_scenes::slow::{StudyRow, WayTally, median_and_worst};
 use std::fmt::Write;
 
@@ -176,7 +177,7 @@ fn legend(rows: &[StudyRow], families: &[&str], missing: usize) -> String {
     let mut last =
         vec!["filled: exact measurements, hollow: rounded; lines join numbers of samples".to_owned()];
     if missing > 0 {
-        last.push(format!("not drawn: {missing} rows of a way that stopped on most bodies"));
+        last.push(format!("not drawn: {} of a way that stopped on most bodies", counted(missing, "row")));
     }
     for (line, text) in last.into_iter().enumerate() {
         let _ = write!(

@@ -1,5 +1,6 @@
 //! What a study of slow motion over many bodies found: text, JSON, a section of the page.
 
+use crate::layout::{counted, counted_in};
 use crate::slow_speed::{speed, ways_of};
 use maud::{Markup, PreEscaped, html};
 use palmistry_scenes::slow::{JumpTally, StudyRow, WayTally, median_and_worst};
@@ -25,13 +26,14 @@ fn tally(way: &WayTally) -> [String; 2] {
 fn jump_tallies(row: &StudyRow) -> Vec<String> {
     let one = |(jumps, at): (&usize, &JumpTally)| {
         format!(
-            "with {jumps} jumps {} runs, the whole outline of {}, every jump in its place in {}; descent leads to {} of {} jumps; {} runs explained, {} with a jump that never happened, {} with one that was missed",
-            at.runs,
+            "with {}: {}, the whole outline of {}, every jump in its place in {}; descent leads to {} of {}; {} explained, {} with a jump that never happened, {} with one that was missed",
+            counted(*jumps, "jump"),
+            counted(at.runs, "run"),
             at.recovered,
             at.located,
             at.predicted[1],
-            at.predicted[0],
-            at.explained,
+            counted(at.predicted[0], "jump"),
+            counted(at.explained, "run"),
             at.false_jumps,
             at.missed
         )
@@ -42,7 +44,12 @@ fn jump_tallies(row: &StudyRow) -> Vec<String> {
 /// What a row of a study is of.
 fn row_in_words(row: &StudyRow) -> String {
     let order = row.order.map_or_else(String::new, |order| format!(", order {order}"));
-    format!("{} {} samples, resolution {} m{order}", row.family.name(), row.samples, row.resolution)
+    format!(
+        "{} {}, resolution {} m{order}",
+        row.family.name(),
+        counted(row.samples, "sample"),
+        row.resolution
+    )
 }
 
 /// Bodies that were drawn and do not count, as text.
@@ -50,7 +57,10 @@ fn passed_over(row: &StudyRow) -> String {
     let why = if row.jumps.is_empty() { "jumped" } else { "did not jump as often as is asked" };
     let ended = match row.asked.saturating_sub(row.bodies) {
         0 => String::new(),
-        missing => format!("; it ended {missing} bodies before the {} that were asked for", row.asked),
+        missing => {
+            let missing = counted_in(missing, "body", "bodies");
+            format!("; it ended {missing} before the {} that were asked for", row.asked)
+        }
     };
     format!("{} {why}{ended}", row.jumped)
 }
@@ -61,11 +71,11 @@ pub(super) fn study_text(rows: &[StudyRow]) -> String {
     for row in rows {
         let _ = writeln!(
             out,
-            "{}: {} of {} recovered, {} silent failures, {}",
+            "{}: {} of {} recovered, {}, {}",
             row_in_words(row),
             row.recovered,
             row.bodies,
-            row.silent,
+            counted(row.silent, "silent failure"),
             passed_over(row)
         );
         for line in jump_tallies(row) {
@@ -138,7 +148,7 @@ pub(super) fn study_section(rows: &[StudyRow]) -> Markup {
         @for row in rows {
             p {
                 (row_in_words(row)) ": "
-                b { (row.recovered) " of " (row.bodies) " recovered, " (row.silent) " silent failures" }
+                b { (row.recovered) " of " (row.bodies) " recovered, " (counted(row.silent, "silent failure")) }
                 "; " (passed_over(row))
                 @if let Some([median, worst]) = median_and_worst(&row.outline) {
                     "; greatest error of the outline: median " (format!("{median:.1e} m, worst {worst:.1e} m"))

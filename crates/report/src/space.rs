@@ -1,5 +1,6 @@
 //! What three palms determine of a body in space: text and JSON.
 
+use crate::layout::{counted, in_columns};
 use palmistry_bodies::mechanics::spatial::SpatialEnded;
 use palmistry_bodies::shape::sphere::{BoundedRegion, OuterBound, TouchError};
 use palmistry_scenes::solid::SolidState;
@@ -173,15 +174,44 @@ fn doubt(update: &SpaceUpdate) -> Option<String> {
     }
 }
 
+/// The verdict on a window.
+fn verdict_in_words(update: &SpaceUpdate) -> &'static str {
+    let is_stated = update.state.as_ref().is_some_and(|state| state.is_stated);
+    match (update.verdict, is_stated) {
+        (SpaceVerdict::Fits, true) => "converged, passes the chi-square test",
+        (SpaceVerdict::Fits, false) => "converged, passes the whiteness test",
+        (SpaceVerdict::DoesNotFit, true) => "converged, fails the chi-square test",
+        (SpaceVerdict::DoesNotFit, false) => "converged, fails the whiteness test",
+        (verdict, _) => verdict.name(),
+    }
+}
+
+/// What to try after a window without a plain success.
+fn next_in_words(verdict: SpaceVerdict) -> Option<&'static str> {
+    match verdict {
+        SpaceVerdict::Fits => None,
+        SpaceVerdict::DoesNotFit => Some(
+            "more 'noise' of the sensors if they have it, a shorter 'window', or palms that are described as they are",
+        ),
+        SpaceVerdict::Unobservable => {
+            Some("a longer 'window', a motion that turns the body more, or contacts with less noise")
+        }
+        SpaceVerdict::Ambiguous => {
+            Some("a longer 'window' or contacts with less noise, so that one of the states is excluded")
+        }
+        SpaceVerdict::Lost => Some("a shorter 'window', or contacts with less noise"),
+    }
+}
+
 /// From when to when a window goes, and what is to be said of it.
 pub(super) fn headline(observed: &SpaceObserved<'_>, update: &SpaceUpdate) -> String {
     let times = &observed.experiment.measurements.times;
     let mut out = format!(
-        "{:.4} to {:.4} s, {} samples: {}",
+        "{:.4} to {:.4} s, {}: {}",
         times[update.rows.start],
         times[update.rows.end - 1],
-        update.rows.len(),
-        update.verdict.name()
+        counted(update.rows.len(), "sample"),
+        verdict_in_words(update)
     );
     if let Some(SolidState { chi_square, degrees, rms_residual, is_stated, .. }) = &update.state {
         let left = match is_stated {
@@ -204,8 +234,11 @@ pub fn space_text(observed: &SpaceObserved<'_>) -> String {
     let (experiment, answers) = (observed.experiment, observed.answers);
     let times = &experiment.measurements.times;
     let covered = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
-    let mut out =
-        format!("{}\n{} samples over {covered:.4} s, nothing known\n", experiment.scene.title, times.len());
+    let mut out = format!(
+        "{}\n{} over {covered:.4} s, nothing known\n",
+        experiment.scene.title,
+        counted(times.len(), "sample")
+    );
     for update in &answers.updates {
         let _ = writeln!(out, "\n{}", headline(observed, update));
         for (place, entry) in entries(observed, update).iter().enumerate() {
@@ -231,17 +264,24 @@ pub fn space_text(observed: &SpaceObserved<'_>) -> String {
             );
         }
     }
+    let mut told: Vec<&str> = Vec::new();
+    for next in answers.updates.iter().filter_map(|update| next_in_words(update.verdict)) {
+        if !told.contains(&next) {
+            told.push(next);
+            let _ = writeln!(out, "try next: {next}");
+        }
+    }
     out.push('\n');
     for (what, value) in shape_rows(observed) {
         let _ = writeln!(out, "{what}: {value}");
     }
     if answers.shape.is_none() {
-        out.push_str("no shape: the first window does not fit\n");
+        out.push_str("no shape: the first window fails its test\n");
     }
     if observed.interrupted {
         out.push_str("interrupted: this is what was done until then\n");
     }
-    out
+    in_columns(&out)
 }
 
 fn number(value: f64) -> Value {

@@ -1,5 +1,6 @@
 //! What runs of a body in space are advised, as text with lines to paste into scenes, and as JSON.
 
+use crate::layout::counted;
 use palmistry_scenes::space::{Laying, PlannedRun, RunsAdvice, SpaceScene};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -12,7 +13,7 @@ fn laid(laying: &Laying) -> String {
 /// What is advised, as text.
 pub fn runs_advice_text(scene: &SpaceScene, advice: &RunsAdvice) -> String {
     let mut out = scene.title.clone();
-    let _ = writeln!(out, "\n{} runs tried; the body is held to the end in {}", advice.tried, advice.held);
+    let _ = writeln!(out, "\n{} tried; the body is held to the end in {}", counted(advice.tried, "run"), advice.held);
     if advice.plan.is_empty() {
         out += "no run was found that holds the body to the end";
         return out;
@@ -24,8 +25,12 @@ pub fn runs_advice_text(scene: &SpaceScene, advice: &RunsAdvice) -> String {
     );
     let _ = writeln!(
         out,
-        "{:>5}{:>12}{:>8}{:>14}   {} rows of random runs: median, most",
-        "runs", "hull, m^3", "part", "outside, m^3", advice.random_rows
+        "{:>5}{:>12}{:>8}{:>14}   {} of random runs: median, most",
+        "runs",
+        "hull, m^3",
+        "part",
+        "outside, m^3",
+        counted(advice.random_rows, "row")
     );
     for (place, PlannedRun { hull, outer, random, .. }) in advice.plan.iter().enumerate() {
         let part = 100.0 * hull.low() / advice.volume;

@@ -33,4 +33,6 @@ pub(crate) use cover::NamedSet;
 pub use on_box::BoxShare;
 pub(crate) use on_box::share_of_the_box;
 pub(crate) use rows::rows_up_to;
-pub use sets::{DropAnswer, DropSet, UsedMinor, where_it_drops, where_it_drops_telling};
+pub use sets::{
+    DropAnswer, DropSet, UsedMinor, singular_set_at_once, where_it_drops, where_it_drops_telling,
+};

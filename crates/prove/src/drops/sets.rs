@@ -10,7 +10,7 @@ use super::on_box::{BoxShare, share_of_the_box};
 use super::real::{has_real_points, state_on};
 use super::rows::Rows;
 use super::shown::Shown;
-use palmistry_budget::{Budget, OF_A_QUESTION};
+use palmistry_budget::{Allowance, Budget, OF_A_QUESTION, Spent};
 use palmistry_lang::{Assignment, System};
 use palmistry_math::expression::{Guard, NodeId, add_guard};
 use palmistry_rank::observability::{Codistribution, Length, WrittenState, solve_conditions};
@@ -115,23 +115,9 @@ pub fn where_it_drops_telling(
     interrupt: &AtomicBool,
     tell: &mut dyn FnMut(DropAnswer),
 ) -> Result<DropAnswer, String> {
-    let mentioned = mentioned_in_words(system);
-    let budget = Arc::new(Budget::new(OF_A_QUESTION));
-    // what was being changed when the budget came to its end is not met again
-    let (mut copy, mut last) = (system.clone(), None);
-    let found = budget.within(|| {
-        with_angles(&mut copy, &mentioned, |system| {
-            drops_of(system, seed, interrupt, &mut |answer: DropAnswer| {
-                last = Some(answer.clone());
-                tell(answer);
-            })
-        })
-    });
+    let (found, last) = drops_within(system, seed, OF_A_QUESTION, interrupt, tell);
     let mut answer = match (found, last) {
-        (Ok(answer), _) => {
-            *system = copy;
-            answer?
-        }
+        (Ok(answer), _) => answer?,
         (Err(spent), Some(last)) => {
             DropAnswer { out_of_reach: Some(format!("cut off: {spent}")), interrupted: false, ..last }
         }
@@ -143,6 +129,52 @@ pub fn where_it_drops_telling(
         answer.seconds += begin.elapsed().as_secs_f64();
     }
     Ok(answer)
+}
+
+/// What [`singular_set_at_once`] may take: about a second.
+const OF_A_MOMENT: Allowance = Allowance { bytes: 1 << 28, nodes: 1 << 20, steps: 1 << 26 };
+
+/// The same with a small budget, and without interval certificates: `None` where the search takes more. The work is counted and not timed, so that the
+/// answer is the same on every machine.
+///
+/// # Errors
+/// In words, where there is no codistribution.
+pub fn singular_set_at_once(
+    system: &mut System,
+    seed: u64,
+    interrupt: &AtomicBool,
+) -> Result<Option<DropAnswer>, String> {
+    let (found, _) = drops_within(system, seed, OF_A_MOMENT, interrupt, &mut |_| ());
+    found.map_or(Ok(None), |answer| answer.map(Some)).map(|found| found.filter(|answer| !answer.interrupted))
+}
+
+/// An answer or why there is none, where the budget suffices; and the last thing that was told.
+type WithinBudget = (Result<Result<DropAnswer, String>, Spent>, Option<DropAnswer>);
+
+/// Finds where the rank drops with an allowance; a system whose budget is used up is left as it was.
+fn drops_within(
+    system: &mut System,
+    seed: u64,
+    allowed: Allowance,
+    interrupt: &AtomicBool,
+    tell: &mut dyn FnMut(DropAnswer),
+) -> WithinBudget {
+    let mentioned = mentioned_in_words(system);
+    let budget = Arc::new(Budget::new(allowed));
+    // what was being changed when the budget came to its end is not met again
+    let (mut copy, mut last) = (system.clone(), None);
+    let found = budget.within(|| {
+        with_angles(&mut copy, &mentioned, |system| {
+            drops_of(system, seed, interrupt, &mut |answer: DropAnswer| {
+                last = Some(answer.clone());
+                tell(answer);
+            })
+        })
+    });
+    if found.is_ok() {
+        *system = copy;
+    }
+    (found, last)
 }
 
 /// All that Lie derivatives depend on: the outputs' differentials, the fields and where they exist.

@@ -1,6 +1,6 @@
 //! Certificates on regions, as JSON and as text.
 
-use crate::layout::counted;
+use crate::layout::{counted, counted_in};
 use crate::names::{by_default_text, fields_json, fields_text, ranges_json};
 use dashu::rational::RBig;
 use palmistry_math::number::rational_from_f64;
@@ -168,18 +168,18 @@ pub fn region_text(answer: &RegionAnswer) -> String {
     for part in answer.parts.iter().filter(|part| !part.coordinates.is_empty()) {
         let _ = writeln!(
             out,
-            "in {}: {} proved, {} boxes, {} of them open",
+            "in {}: {} proved, {}, {} of them open",
             part.coordinates.join(", "),
             percent(part.proved),
-            part.boxes,
+            counted_in(part.boxes, "box", "boxes"),
             part.open_boxes
         );
         for vanishing in &part.vanishing {
             let what = if vanishing.minor.is_some() { "a minor vanishes" } else { "a singularity lies" };
             let _ = writeln!(
                 out,
-                "  {what} in {} boxes of {:.2e}: {} = 0",
-                vanishing.boxes,
+                "  {what} in {} of {:.2e}: {} = 0",
+                counted_in(vanishing.boxes, "box", "boxes"),
                 vanishing.fraction,
                 shortened(&vanishing.factor)
             );
@@ -190,7 +190,7 @@ pub fn region_text(answer: &RegionAnswer) -> String {
     }
     let finished = if answer.finished { ", and nothing is left to halve" } else { "" };
     let time = if answer.seconds.is_nan() { String::new() } else { format!(" in {:.2} s", answer.seconds) };
-    let _ = write!(out, "{} boxes{time}{finished}", answer.boxes);
+    let _ = write!(out, "{}{time}{finished}", counted_in(answer.boxes, "box", "boxes"));
     out
 }
 

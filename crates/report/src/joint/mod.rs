@@ -4,6 +4,7 @@ mod page;
 mod plot;
 mod tables;
 
+use crate::layout::{counted_in, in_columns};
 pub use page::joint_page;
 pub(crate) use page::joint_section;
 use palmistry_fit::{
@@ -309,11 +310,11 @@ fn ending(observed: &JointObserved<'_>) -> Vec<String> {
             }
             lines.push(match &observed.answer.goodness {
                 Some(own) => format!(
-                    "chi-square test: {} with {} degrees of freedom; chance leaves more with probability {:.2e}: {}",
+                    "{} the chi-square test: {} with {} (p = {:.2e})",
+                    if own.fits() { "passes" } else { "fails" },
                     short(own.chi_square),
-                    own.degrees,
+                    counted_in(own.degrees, "degree of freedom", "degrees of freedom"),
                     own.probability,
-                    if own.fits() { "these parameters explain the measurements" } else { "these parameters do not explain them" }
                 ),
                 None if fit.best().end != StartEnd::Converged => "no test of fit: the search came to no end".to_owned(),
                 None => "no test of fit: the size of the errors is estimated, or they are not normal, there are priors, or too few measurements".to_owned(),
@@ -374,7 +375,21 @@ pub fn joint_text(observed: &JointObserved<'_>) -> String {
     if observed.interrupted {
         let _ = writeln!(out, "\ninterrupted: this is what was found until then");
     }
-    out.trim_end().to_owned()
+    if let Some(next) = next_in_words(observed) {
+        let _ = writeln!(out, "try next: {next}");
+    }
+    in_columns(out.trim_end())
+}
+
+/// What to try where there is no plain success; of searches that came to no end it is said where they are counted.
+fn next_in_words(observed: &JointObserved<'_>) -> Option<&'static str> {
+    match (&observed.answer.fit, &observed.answer.goodness) {
+        (Some(Err(_)), _) => Some("other bounds of the parameters, or more starts under [search]"),
+        (_, Some(own)) if !own.fits() => Some(
+            "another model, larger errors of the measurements if they have them, or more starts under [search]",
+        ),
+        _ => None,
+    }
 }
 
 /// A number of JSON; none where it is no finite one.

@@ -1,9 +1,10 @@
 //! What observers made of an experiment, as JSON and as text.
 
 use crate::axis::unit_of;
-use crate::layout::counted;
+use crate::layout::{counted, in_columns};
 use crate::motion::closure::{closure_json, closure_text};
 use crate::motion::fit::{finite, fit_in_words, noise_from, suspect_json, suspects_in_words};
+use crate::motion::next::next_lines_of_track;
 use crate::motion::recognition::{recognition_json, recognition_text};
 use crate::motion::reconstruction::{shape_json, shape_text};
 use crate::motion::studies::{studies_json, studies_text};
@@ -320,13 +321,14 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
     if let Some(simulation) = &experiment.simulation {
         let _ = writeln!(
             text,
-            "{samples} samples; {}; energy kept to {:.1e} J",
+            "{}; {}; energy kept to {:.1e} J",
+            counted(samples, "sample"),
             simulation.ended(),
             simulation.trajectory.energy_drift()
         );
     } else if let Some(motion) = &experiment.motion {
         let ended = motion.ended().map_or_else(|| "completed".to_owned(), |lost| format!("ended {lost}"));
-        let _ = writeln!(text, "{samples} samples; {ended}");
+        let _ = writeln!(text, "{}; {ended}", counted(samples, "sample"));
     } else {
         let samples = counted(samples, "sample");
         let _ = writeln!(text, "{samples} from a file; faults: {}", experiment.faults.len());
@@ -362,7 +364,12 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
             state_lines(&mut text, observed, &names, at.time, &at.state, known);
         }
         if answer.track.unobserved > 0 {
-            let _ = writeln!(text, "  not observable for {} of {samples} samples", answer.track.unobserved);
+            let _ = writeln!(
+                text,
+                "  not observable for {} of {}",
+                answer.track.unobserved,
+                counted(samples, "sample")
+            );
         }
         for other in &answer.track.others {
             let _ = writeln!(
@@ -379,6 +386,9 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         for remark in &answer.track.remarks {
             let _ = writeln!(text, "  {remark}");
         }
+        for line in next_lines_of_track(&answer.track) {
+            let _ = writeln!(text, "  {line}");
+        }
     }
     if let Some(found) = &experiment.recognition {
         text.push_str(&recognition_text(found));
@@ -391,7 +401,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
     if observed.interrupted {
         text.push_str("\ninterrupted; this is what was done until then\n");
     }
-    text
+    in_columns(&text)
 }
 
 /// The unit that a state's values are in; of palms, where all is in SI units, none is said.

@@ -1,5 +1,6 @@
 //! Whether what an observer found explains the measurements, as text and as JSON; and what would not be noticed.
 
+use crate::layout::counted;
 use palmistry_observe::{Fit, NoiseFrom, Suspect, Update, UpdateEnd};
 use serde_json::{Map, Value, json};
 
@@ -33,18 +34,26 @@ pub(super) fn fit_in_words(update: &Update) -> String {
     match update.end {
         // a search that has not ended has no test, but its residual against a known noise is of use
         UpdateEnd::StepsSpent if !fit.fits && fit.degrees > 0 && fit.from == NoiseFrom::Stated => {
-            format!(", does not fit where it stands: {}", unexplained(update, fit))
+            format!(", fails the chi-square test where it stands: {}", unexplained(update, fit))
         }
         UpdateEnd::Unobservable { .. } | UpdateEnd::Lost(_) | UpdateEnd::StepsSpent => String::new(),
         _ if fit.fits => format!(", {}", explained(fit)),
-        _ => format!(", fails the test of fit: {}", unexplained(update, fit)),
+        _ => format!(", fails the {}: {}", test_name(fit), unexplained(update, fit)),
+    }
+}
+
+/// What is tested: against a stated noise the size of the residuals, else whether they are white.
+fn test_name(fit: &Fit) -> &'static str {
+    match fit.from {
+        NoiseFrom::Stated => "chi-square test",
+        _ => "whiteness test",
     }
 }
 
 fn explained(fit: &Fit) -> String {
     match fit.from {
         NoiseFrom::Stated => format!("passes the chi-square test ({})", p_in_words(fit.probability)),
-        NoiseFrom::Residual => format!("residuals are white noise of {:.1e}", fit.sigma),
+        NoiseFrom::Residual => format!("passes the whiteness test (residuals of {:.1e})", fit.sigma),
         NoiseFrom::Untested => {
             format!("too few measurements to test the residuals; their size is {:.1e}", fit.sigma)
         }
@@ -58,7 +67,7 @@ pub(super) fn unexplained(update: &Update, fit: &Fit) -> String {
     match fit.from {
         _ if fit.degrees == 0 => "there are no more measurements than unknowns".to_owned(),
         NoiseFrom::Stated if fit.has_outliers() => {
-            format!("{} measurements are outliers, more than a tenth", fit.outliers)
+            format!("more than a tenth are outliers, {}", counted(fit.outliers, "measurement"))
         }
         NoiseFrom::Stated if fit.by_drift().is_some() => format!(
             "residuals of {rms_residual:.1e} for a noise of {:.1e}, and they drift, those of {} most: {}",
@@ -150,6 +159,7 @@ pub(super) fn suspect_json(names: &[&str], suspect: &Suspect) -> Value {
 #[cfg(test)]
 mod tests {
     use super::{explained, p_in_words};
+    use crate::layout::counted;
     use palmistry_observe::{Fit, NoiseFrom};
 
     #[test]
@@ -176,6 +186,6 @@ mod tests {
         };
         assert_eq!(explained(&fit), "too few measurements to test the residuals; their size is 5.0e-1");
         let noise = Fit { from: NoiseFrom::Residual, ..fit };
-        assert_eq!(explained(&noise), "residuals are white noise of 5.0e-1");
+        assert_eq!(explained(&noise), "passes the whiteness test (residuals of 5.0e-1)");
     }
 }

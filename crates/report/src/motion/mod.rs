@@ -6,6 +6,7 @@ pub(super) mod curves;
 pub(super) mod fit;
 pub(super) mod frames;
 pub(super) mod modes;
+mod next;
 pub(super) mod outline_plot;
 pub(super) mod outline_section;
 pub(super) mod page;

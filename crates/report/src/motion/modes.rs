@@ -2,7 +2,7 @@
 
 use super::answers::end_name;
 use super::fit::finite;
-use crate::layout::counted;
+use crate::layout::{counted, in_columns};
 use palmistry_observe::{MotionRankFound, Objection, Update};
 use palmistry_scenes::{Experiment, ModeEstimate, ModeWindow};
 use serde_json::{Map, Value, json};
@@ -77,8 +77,8 @@ pub fn modes_json(experiment: &Experiment, windows: &[ModeWindow]) -> Value {
 pub fn modes_text(experiment: &Experiment, windows: &[ModeWindow]) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "{}", experiment.scene.title);
-    let _ =
-        writeln!(text, "{} samples, {}", experiment.signals.times().len(), counted(windows.len(), "window"));
+    let samples = counted(experiment.signals.times().len(), "sample");
+    let _ = writeln!(text, "{samples}, {}", counted(windows.len(), "window"));
     for window in windows {
         let _ = write!(text, "  {:.3} s to {:.3} s: ", window.from, window.to);
         let Some(estimate) = window.chosen.map(|place| &window.estimates[place]) else {
@@ -89,13 +89,20 @@ pub fn modes_text(experiment: &Experiment, windows: &[ModeWindow]) -> String {
                 window.estimates.iter().for_each(|estimate| rank_line(&mut text, estimate));
                 continue;
             }
-            let _ = writeln!(text, "no mode fits, the least residual is {least:.1e}{}", truth(window));
+            let _ = writeln!(
+                text,
+                "every mode fails its test, the least residual is {least:.1e}{}",
+                truth(window)
+            );
             continue;
         };
         let others = window.estimates.iter().filter(|other| other.fits() && other.name != estimate.name);
         let others: Vec<&str> = others.map(|other| other.name.as_str()).collect();
-        let also =
-            if others.is_empty() { String::new() } else { format!(" ({} fit worse)", others.join(", ")) };
+        let also = if others.is_empty() {
+            String::new()
+        } else {
+            format!(" ({} pass with larger residuals)", others.join(", "))
+        };
         let rms_residual = estimate.update.as_ref().map_or(f64::NAN, |update| update.rms_residual);
         let _ = writeln!(text, "{}{also}, residual {rms_residual:.1e}{}", estimate.name, truth(window));
         window.estimates.iter().for_each(|estimate| rank_line(&mut text, estimate));
@@ -106,10 +113,16 @@ pub fn modes_text(experiment: &Experiment, windows: &[ModeWindow]) -> String {
     match experiment.samples_after_windows() {
         0 => {}
         left => {
-            let _ = writeln!(text, "  the last {left} samples are in no window, and nothing is said of them");
+            let (samples, are) = (counted(left, "sample"), if left == 1 { "is" } else { "are" });
+            let _ = writeln!(text, "  the last {samples} {are} in no window, and nothing is said of them");
         }
     }
-    text
+    if windows.iter().any(|window| window.chosen.is_none()) {
+        text.push_str(
+            "  try next (no mode passes): a mode for what happens there, more 'noise' of the sensors if they have it, or a shorter 'window' where modes change inside of one\n",
+        );
+    }
+    in_columns(&text)
 }
 
 /// The rank of an observer's system, and what came of it.
@@ -117,8 +130,11 @@ fn rank_line(text: &mut String, estimate: &ModeEstimate) {
     let Some(rank) = &estimate.rank else { return };
     let is_certain = if rank.certified { ", certified" } else { "" };
     let word = format!(
-        "rank {} of {} at {} samples{is_certain}, condition at most {:.1e}",
-        rank.rank, rank.of, rank.asked, rank.condition
+        "rank {} of {} at {}{is_certain}, condition at most {:.1e}",
+        rank.rank,
+        rank.of,
+        counted(rank.asked, "sample"),
+        rank.condition
     );
     let came = match (&estimate.objection, &estimate.update) {
         (Some(why), None) => format!("not asked: {why}"),

@@ -28,9 +28,9 @@ fn in_words(found: &Recognition) -> String {
 /// What is said of one body.
 fn standing(body: &LibraryAnswer) -> String {
     let Some(fit) = body.fit else { return "no motion of it could be followed".to_owned() };
-    let fits = if fit.fits { "fits" } else { "does not fit" };
+    let does = if fit.fits { "passes" } else { "fails" };
     let (square, degrees) = (fit.chi_square, fit.degrees);
-    format!("{fits} ({}), chi-square {square:.1} of {degrees}", p_in_words(fit.probability))
+    format!("{does} the chi-square test ({}): {square:.1} of {degrees}", p_in_words(fit.probability))
 }
 
 fn measured(number: Measured) -> String {
@@ -54,6 +54,15 @@ pub(super) fn recognition_text(found: &Recognition) -> String {
             }
             false => text.push('\n'),
         }
+    }
+    match &found.verdict {
+        RecognitionVerdict::Recognised(_) => {}
+        RecognitionVerdict::Alike(_) => text.push_str(
+            "  try next (cannot be distinguished): a motion that touches more of the outline, or sensors with less noise\n",
+        ),
+        RecognitionVerdict::NoneOfThem => text.push_str(
+            "  try next (none of them): add the body to [[observer.library]], or recover its outline without one\n",
+        ),
     }
     text
 }

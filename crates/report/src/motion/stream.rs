@@ -1,10 +1,11 @@
 //! What observers make of a stream: a line of JSON or some lines of text a window, and the end.
 
-use crate::layout::counted;
+use crate::layout::{counted, in_columns};
 use crate::motion::answers::{
     Beside, Observed, end_name, fault_lines, origin, origin_in_words, state_lines, states, update_json,
 };
 use crate::motion::fit::{fit_in_words, suspects_in_words};
+use crate::motion::next::{next_line_of_tests, next_lines};
 use crate::motion::verdicts::{innovations_in_words, innovations_json, together_in_words, together_json};
 use palmistry_scenes::{StreamAnswer, StreamEnd, WindowReport};
 use serde_json::{Value, json};
@@ -110,8 +111,11 @@ pub fn stream_text(report: &WindowReport<'_>, is_timed: bool) -> String {
         for remark in &answer.remarks {
             let _ = writeln!(text, "  {remark}");
         }
+        for line in next_lines(&answer.updates, &answer.others) {
+            let _ = writeln!(text, "  {line}");
+        }
     }
-    text
+    in_columns(&text)
 }
 
 /// The end of a stream as text.
@@ -123,7 +127,7 @@ pub fn stream_end_text(end: &StreamEnd) -> String {
         end.faults
     );
     for tally in end.observers.iter().filter(|tally| tally.updates > 0) {
-        let _ = write!(text, "; {}: {} of {} updates fit", tally.method.name(), tally.fit, tally.updates);
+        let _ = write!(text, "; {}: {} of {} updates pass", tally.method.name(), tally.fit, tally.updates);
         if tally.untested > 0 {
             let _ = write!(text, ", {} with too little measured to test the residuals", tally.untested);
         }
@@ -138,6 +142,11 @@ pub fn stream_end_text(end: &StreamEnd) -> String {
         if let Some(own) = &tally.innovations {
             let _ = write!(text, "\n{}: {}", tally.method.name(), innovations_in_words(own));
         }
+        let windows_fail = tally.contradicted == 0 && tally.tested.together().is_some_and(|all| !all.fits);
+        let innovations_fail = tally.innovations.as_ref().is_some_and(|own| !own.fits);
+        for line in next_line_of_tests(windows_fail, innovations_fail) {
+            let _ = write!(text, "\n{}: {line}", tally.method.name());
+        }
     }
     if let Some(why) = &end.cut_off {
         let _ = write!(text, "\ncut off: {why}; what was answered until then stands");
@@ -145,5 +154,5 @@ pub fn stream_end_text(end: &StreamEnd) -> String {
     if end.fault.is_some() {
         text.push_str("\nended by a faulty row; what was answered until then stands");
     }
-    text
+    in_columns(&text)
 }

@@ -84,7 +84,7 @@ pub(super) fn studies_text(studied: &Studied, names: &[&str], unit: &str, text: 
     for level in &studied.noise {
         let _ = writeln!(
             text,
-            "\nnoise {:.1e}{}: {} of {} seeds converged, of {} it was said that they do not fit",
+            "\nnoise {:.1e}{}: {} of {} seeds converged, {} of them fail the chi-square test",
             level.noise, unit, level.converged, level.seeds, level.unfit
         );
         for ((name, error), bound) in names.iter().zip(&level.errors).zip(&level.bounds) {
@@ -95,7 +95,7 @@ pub(super) fn studies_text(studied: &Studied, names: &[&str], unit: &str, text: 
     for basin in &studied.basins {
         let _ = writeln!(
             text,
-            "\n{} arrives from {:.1}% of {} first guesses of {} and {}",
+            "\n{} arrives from {:.1}% of {} initial guesses of {} and {}",
             basin.method.name(),
             100.0 * basin.fraction(),
             basin.arrives.iter().flatten().count(),

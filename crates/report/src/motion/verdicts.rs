@@ -16,12 +16,13 @@ pub(super) fn verdict_lines(track: &Track) -> Vec<String> {
 fn untested_in_words(updates: &[Update]) -> Option<String> {
     let untested = updates.iter().filter(|update| update.is_untested()).count();
     (untested > 0 && updates.len() > 1).then(|| {
-        format!("of {untested} of {} windows too little was measured to test the residuals", updates.len())
+        let windows = updates.len();
+        format!("in {untested} of {windows} windows too little was measured to test the residuals")
     })
 }
 
 pub(super) fn together_in_words(all: &Together) -> String {
-    let does = if all.fits { "fit together" } else { "do not fit together" };
+    let does = if all.fits { "pass" } else { "fail" };
     let seam = all.worst_seam.map_or_else(String::new, |(seam, probability)| {
         format!(
             "; where they meet they are apart most at {:.3} s, by chi-square {:.1} of {} ({} of the worst)",
@@ -35,7 +36,7 @@ pub(super) fn together_in_words(all: &Together) -> String {
         format!("; all such differences together have {}", p_in_words(probability))
     });
     format!(
-        "the {} windows {does} ({} by Fisher's test){seam}{seams}",
+        "the {} windows together {does} the chi-square test ({} by Fisher's method){seam}{seams}",
         all.windows,
         p_in_words(all.probability)
     )
@@ -43,7 +44,7 @@ pub(super) fn together_in_words(all: &Together) -> String {
 
 /// The test of a filter's innovations.
 pub(super) fn innovations_in_words(own: &Innovations) -> String {
-    let does = if own.fits { "pass" } else { "do not pass" };
+    let does = if own.fits { "pass" } else { "fail" };
     let white = own.whiteness.map_or_else(String::new, |p| format!("; as white noise {}", p_in_words(p)));
     format!(
         "its innovations {does} the chi-square test: normalised squares of {:.1} for {} measurements with noise of {:.1e} ({}){white}",

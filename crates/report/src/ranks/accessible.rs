@@ -3,6 +3,7 @@
 use super::answer::{stop_text, sweep_json};
 use super::deviations::{part_text, place_text};
 use super::generic::finite;
+use crate::layout::{counted, in_columns};
 use crate::names::{fields_json, fields_text, values_json, values_text};
 use palmistry_rank::observability::RankBounds;
 use palmistry_rank::sweep::{AccessibilityAnswer, AccessibilityBranch, SweepReport, UnobservableDirection};
@@ -77,7 +78,7 @@ fn bounds_text(what: &str, bounds: &RankBounds, full: usize, out: &mut String) {
 /// An answer as text.
 pub fn accessibility_text(answer: &AccessibilityAnswer) -> String {
     let full = answer.coordinates.len();
-    let mut out = format!("{}: {full} coordinates that can be moved\n", answer.title);
+    let mut out = format!("{}: {} that can be moved\n", answer.title, counted(full, "coordinate"));
     let _ = writeln!(out, "fields: {}", fields_text(&answer.fields));
     for branch in &answer.branches {
         if !branch.conditions.is_empty() {
@@ -89,13 +90,13 @@ pub fn accessibility_text(answer: &AccessibilityAnswer) -> String {
         bounds_text("accessibility", &branch.whole, full, &mut out);
         bounds_text("strong accessibility, without the drift itself", &branch.strong, full, &mut out);
         let _ = writeln!(out, "brackets that were needed: {}", branch.brackets.join(", "));
-        let _ =
-            writeln!(out, "brackets of up to {} fields were taken: {}", branch.order, stop_text(branch.stop));
+        let fields = counted(branch.order, "field");
+        let _ = writeln!(out, "brackets of up to {fields} were taken: {}", stop_text(branch.stop));
         if let Some(report) = &branch.sampled {
             sampled_text(branch, report, &mut out);
         }
     }
-    out.trim_end().to_owned()
+    in_columns(out.trim_end())
 }
 
 /// `dx - 2 dy`
@@ -126,21 +127,21 @@ fn sampled_text(branch: &AccessibilityBranch, report: &SweepReport, out: &mut St
             Some(generic) if *rank < generic => "; longer brackets may raise it there",
             _ => "",
         };
-        let _ = writeln!(out, "  rank {rank:>2} at {count} states{more}");
+        let _ = writeln!(out, "  rank {rank:>2} at {}{more}", counted(*count, "state"));
     }
-    let _ = writeln!(out, "  certified at {} of {} states", report.certified, report.samples);
+    let _ = writeln!(out, "  certified at {} of {}", report.certified, counted(report.samples, "state"));
     for direction in &report.unobservable {
         let _ = writeln!(
             out,
-            "  no bracket moves, at {} states: a combination of {}; for one, {} = 0",
-            direction.count,
+            "  no bracket moves, at {}: a combination of {}; for one, {} = 0",
+            counted(direction.count, "state"),
             direction.states.join(", "),
             differential_text(direction)
         );
         let _ = writeln!(out, "    at {}", place_text(&direction.at));
     }
     for (pole, count) in &report.poles {
-        let _ = writeln!(out, "  {count} poles left out: {pole}");
+        let _ = writeln!(out, "  {} left out, singular there: {pole}", counted(*count, "state"));
     }
     if report.interrupted {
         let _ = writeln!(out, "  interrupted: these are the states done until then");

@@ -2,7 +2,7 @@
 
 use super::generic::unknown_verdict;
 use crate::claims::outcomes::error_bound;
-use crate::layout::counted;
+use crate::layout::{counted, in_columns};
 use crate::names::{values_json, values_text};
 use palmistry_io::foreign::shown;
 use palmistry_lang::UnknownKind;
@@ -120,7 +120,7 @@ pub fn design_text(answer: &DesignAnswer) -> String {
     }
     if answer.is_met {
         out.push_str("nothing needs to be added");
-        return out;
+        return in_columns(&out);
     }
     let mut last = 0;
     let texts: Vec<String> = answer.designs.iter().map(|design| set_in_words(&design.additions)).collect();
@@ -167,7 +167,7 @@ pub fn design_text(answer: &DesignAnswer) -> String {
     for (addition, why) in &answer.left_out {
         let _ = writeln!(out, "left out: {}: {}", words(addition), shown(why));
     }
-    out.trim_end().to_owned()
+    in_columns(out.trim_end())
 }
 
 /// Longer sets do not widen the column of sets.

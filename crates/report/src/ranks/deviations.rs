@@ -1,6 +1,6 @@
 //! What is unobservable at a state, and how well everything else is observable.
 
-use crate::layout::{item, prose};
+use crate::layout::{in_columns, item, prose};
 use crate::names::plain_number;
 use dashu::rational::RBig;
 use palmistry_math::number::{rational_to_f64, round_to_decimal};
@@ -88,11 +88,24 @@ pub(super) fn deviations_text(found: &StandardDeviations, out: &mut String) {
             deviation(row.median),
             deviation(row.worst)
         );
-        let _ = writeln!(out, "{}", line.trim_end());
+        // a long name: the line is broken
+        let _ = writeln!(out, "{}", in_columns(line.trim_end()));
     }
     if let Some(least) = &found.least {
         let (state, deviation) = (&least.state, deviation_text(found, least));
         item(&format!("least observable: {state}, {deviation}, at {}", place_text(&least.at)), out);
+    }
+}
+
+/// The states that are nearly unobservable, in one line; nothing where there is none.
+pub(super) fn nearly_unobservable_text(found: &StandardDeviations, out: &mut String) {
+    let nearly = found.list.iter().filter(|row| row.infinite == 0 && row.median >= NEARLY_INVISIBLE);
+    let names: Vec<&str> = nearly.map(|row| row.state.as_str()).collect();
+    if !names.is_empty() {
+        item(
+            &format!("nearly unobservable there: {} (--details: standard deviations)", names.join(", ")),
+            out,
+        );
     }
 }
 

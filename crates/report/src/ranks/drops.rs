@@ -1,15 +1,16 @@
 //! Where a rank drops, as JSON and as text.
 
 use crate::claims::outcomes::error_bound;
+use crate::layout::{counted, counted_in, in_columns};
 use crate::names::{by_default_text, ranges_json};
 use palmistry_prove::drops::{BoxShare, DropAnswer, DropSet, UsedMinor};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// Longer factors are not printed in a text.
-const LONGEST: usize = 160;
+/// Longer formulas are not printed in a text: they are counted.
+const LONGEST: usize = 400;
 
-fn set_json(set: &DropSet) -> Value {
+pub(super) fn set_json(set: &DropSet) -> Value {
     let state = set.state.as_ref().map(|state| {
         let named = |at: &palmistry_rank::observability::NamedCoordinate| {
             (at.name.clone(), json!({ "exact": at.exact, "value": at.value }))
@@ -72,11 +73,12 @@ pub fn drops_json(answer: &DropAnswer) -> Value {
     })
 }
 
+/// A formula, or how long it is: one that is cut off would be another one.
 fn short(text: &str) -> String {
-    if text.chars().count() <= LONGEST {
-        return text.to_owned();
+    match text.chars().count() {
+        length if length > LONGEST => format!("[a formula of {length} characters: --json has it]"),
+        _ => text.to_owned(),
     }
-    text.chars().take(LONGEST).chain("...".chars()).collect()
 }
 
 fn place(equations: &[String], unless: &[String]) -> String {
@@ -111,7 +113,7 @@ pub fn drops_text(answer: &DropAnswer) -> String {
         match error_bound(set.log2_error).as_str() {
             "0" => out.push_str(" (certain)"),
             bound => {
-                let _ = write!(out, " (error below {bound})");
+                let _ = write!(out, " (error probability below {bound})");
             }
         }
         out.push('\n');
@@ -153,9 +155,9 @@ pub fn drops_text(answer: &DropAnswer) -> String {
         Some(Ok(share)) => {
             let _ = writeln!(
                 out,
-                "on {} % of the sample box the rank is {rank}: proved, by interval certificates ({} boxes)",
+                "on {} % of the sample box the rank is {rank}: proved, by interval certificates ({})",
                 share.percent(),
-                share.boxes
+                counted_in(share.boxes, "box", "boxes")
             );
             if !share.by_default.is_empty() {
                 let _ = writeln!(out, "  {}", by_default_text(&share.by_default));
@@ -179,12 +181,12 @@ pub fn drops_text(answer: &DropAnswer) -> String {
     // cut off before its first case it has none to count, and no time where none is to be told
     let counted = match answer.cases {
         (0, _) => None,
-        (cases, empty) => Some(format!("{cases} cases, {empty} of them empty")),
+        (cases, empty) => Some(format!("{}, {empty} of them empty", counted(cases, "case"))),
     };
     let time = answer.seconds.is_finite().then(|| format!("{:.1} s", answer.seconds));
     let last: Vec<String> = counted.into_iter().chain(time).collect();
     if !last.is_empty() {
         let _ = writeln!(out, "{}", last.join(", "));
     }
-    out
+    in_columns(&out)
 }

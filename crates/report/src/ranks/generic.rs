@@ -1,6 +1,6 @@
 //! What is observable generically, except on a set of measure zero, and of each unknown whether it is.
 
-use crate::layout::prose;
+use crate::layout::{in_columns, prose};
 use palmistry_lang::UnknownKind;
 use palmistry_rank::observability::{GenericAnswer, Observability};
 use palmistry_rank::sweep::GenericOnBranch;
@@ -103,7 +103,7 @@ pub fn rank_so_far_text(file: &str, branches: &[GenericOnBranch], cut_off: Optio
         }
         generic_text(&branch.generic, &branch.unknowns, &mut out);
     }
-    out
+    in_columns(&out)
 }
 
 /// The table of unknowns and then the sentence that it follows from, as text.

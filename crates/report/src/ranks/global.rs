@@ -2,7 +2,7 @@
 
 use super::generic::unknown_verdict;
 use crate::claims::outcomes::error_bound;
-use crate::layout::counted;
+use crate::layout::{COLUMNS, Layout, counted, in_columns, item, prose};
 use crate::names::{plain_number, values_json, values_text};
 use palmistry_io::foreign::shown;
 use palmistry_lang::UnknownKind;
@@ -194,51 +194,71 @@ fn in_words(of_it: &SolutionsOf, orders_are_open: bool) -> String {
 
 /// An answer as text.
 pub fn global_text(answer: &GlobalAnswer) -> String {
-    let found = &answer.solutions;
     let mut out = format!("{}: {}\n", shown(&answer.file), answer.title);
-    if !answer.conditions.is_empty() {
-        let _ = writeln!(out, "initial conditions: {}", answer.conditions.join(", "));
-    }
-    if !answer.held.is_empty() {
-        let _ = writeln!(out, "with {}", values_text(&answer.held));
-    }
-    if !answer.known.is_empty() {
-        let _ = writeln!(out, "known: {}", answer.known.join(", "));
-    }
+    global_findings(answer, &mut out);
+    global_circumstances(answer, true, &mut out);
+    in_columns(&out)
+}
+
+/// What was found: the table of unknowns, a witness, identifiable functions.
+pub(super) fn global_findings(answer: &GlobalAnswer, out: &mut String) {
+    let found = &answer.solutions;
     let _ = writeln!(out, "how many values of each unknown give the same outputs, generically");
     let width = |of: &dyn Fn(&SolutionsOf) -> usize| found.unknowns.iter().map(of).max().unwrap_or(0);
     let names = width(&|of_it| of_it.name.chars().count());
     let verdicts = width(&|of_it| strongest(of_it).len());
+    let layout = Layout { width: Some(COLUMNS), ..Layout::default() };
+    // further lines stand below the number of solutions, unless names leave no room there
+    let hang = if names + verdicts < 36 { names + verdicts + 6 } else { 4 };
     for of_it in &found.unknowns {
         let (name, verdict) = (&of_it.name, strongest(of_it));
         let rest = in_words(of_it, found.orders_are_open);
-        let _ = writeln!(out, "  {name:<names$}  {verdict:<verdicts$}  {rest}");
-    }
-    if let Some(second) = &found.second {
         let _ = writeln!(
             out,
-            "a witness: two points at which all derivatives of the outputs up to order {} are equal, in exact numbers",
-            second.order
+            "{}",
+            layout.wrap(&format!("  {name:<names$}  {verdict:<verdicts$}  "), hang, &rest)
+        );
+    }
+    if let Some(second) = &found.second {
+        prose(
+            &format!(
+                "a witness: two points at which all derivatives of the outputs up to order {} are equal, in exact numbers",
+                second.order
+            ),
+            out,
         );
         for (name, one, other) in &second.values {
             let (one, other) = (plain_number(one), plain_number(other));
             let text = if one == other { one } else { format!("{one} or {other}") };
-            let _ = writeln!(out, "  {name} = {text}");
+            item(&format!("{name} = {text}"), out);
         }
     }
     if let Some(functions) = &answer.functions {
-        out.push_str(&functions_text(functions));
+        out.push_str(&in_columns(&functions_text(functions)));
+    }
+}
+
+/// What was taken for granted, and how it was computed. Fixed values and what is known are left out where another answer about the system says so.
+pub(super) fn global_circumstances(answer: &GlobalAnswer, is_alone: bool, out: &mut String) {
+    let found = &answer.solutions;
+    if !answer.conditions.is_empty() {
+        prose(&format!("initial conditions: {}", answer.conditions.join(", ")), out);
+    }
+    if is_alone && !answer.held.is_empty() {
+        prose(&format!("fixed at the values in the file: {}", values_text(&answer.held)), out);
+    }
+    if is_alone && !answer.known.is_empty() {
+        prose(&format!("known: {}", answer.known.join(", ")), out);
     }
     if found.rounds > 0 {
         let orders: Vec<String> = found.orders.iter().map(ToString::to_string).collect();
         let is_timed = answer.seconds.is_finite();
         let time = if is_timed { format!(", {:.1} s", answer.seconds) } else { String::new() };
-        let _ = writeln!(
-            out,
-            "computed at {} random points modulo random primes of 62 bits, from derivatives of the outputs up to {}{time}",
-            found.rounds,
+        let text = format!(
+            "computed at {} modulo random primes of 62 bits, from derivatives of the outputs up to {}{time}",
+            counted(found.rounds, "random point"),
             orders.join(", "),
         );
+        prose(&text, out);
     }
-    out
 }

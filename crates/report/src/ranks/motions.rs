@@ -2,8 +2,9 @@
 
 use crate::claims::outcomes::error_bound;
 use crate::formula::SignedPart;
-use crate::layout::{counted, item};
+use crate::layout::{counted, item, prose};
 use palmistry_rank::observability::{FieldComponent, UnobservableDirections, UnobservableField};
+use palmistry_rank::sweep::RankAnswer;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -60,31 +61,30 @@ fn certainty(log2_error: f64) -> String {
     }
 }
 
-/// Identifiable combinations and unobservable directions as text, before what was found at sampled states or alone.
-pub(super) fn motions_text(found: &UnobservableDirections, sampled: bool, out: &mut String) {
+/// Identifiable combinations and unobservable directions as text. Of a direction without a field it is said whether one at a single sampled state
+/// is known.
+pub(super) fn motions_text(found: &UnobservableDirections, at_states: bool, out: &mut String) {
     let scope = if found.for_all_parameters { ", for all parameter values" } else { "" };
     // a field stays one at any values; at special ones there may be more of them, and fewer functions
-    let generic_scope = if found.for_all_parameters { ", for almost all parameter values" } else { "" };
     let degree = if found.cut_off { "; higher degrees have too many coefficients to be tried" } else { "" };
     if !found.functions.is_empty() || found.functions_missing > 0 {
-        let _ = writeln!(out, "identifiable functions of the unobservable unknowns{generic_scope}:");
+        let of_what = if found.for_all_parameters { "generically identifiable" } else { "identifiable" };
+        prose(&format!("{of_what} combinations of the unobservable unknowns:"), out);
     }
     for function in &found.functions {
-        // a formula is on one line, however long: it is to be copied
-        let _ = writeln!(out, "  {}  (proved, {})", function.text, certainty(function.log2_error));
+        item(&format!("{}  (proved, {})", function.text, certainty(function.log2_error)), out);
     }
     if found.functions_missing > 0 {
         let more = counted(found.functions_missing, "more function");
         item(&format!("{more}, not found in low degree{degree}"), out);
     }
     let directions = if found.directions() == 1 { "direction" } else { "directions" };
-    let _ = writeln!(out, "unobservable {directions}{scope}:");
+    prose(&format!("unobservable {directions}{scope}:"), out);
     for field in &found.fields {
-        let _ =
-            writeln!(out, "  {}  (proved, {})", unobservable_field_text(field), certainty(field.log2_error));
+        item(&format!("{}  (proved, {})", unobservable_field_text(field), certainty(field.log2_error)), out);
     }
     if found.fields_missing > 0 {
-        let below = if sampled { ": below each is shown at one state" } else { "" };
+        let below = if at_states { "; --details has each at one state" } else { "" };
         item(
             &format!(
                 "{} more, of which no field of low degree was found{degree}{below}",
@@ -93,6 +93,11 @@ pub(super) fn motions_text(found: &UnobservableDirections, sampled: bool, out: &
             out,
         );
     }
+}
+
+/// Identifiable combinations and unobservable directions of an answer as JSON, those of its first branch; null where all is observable.
+pub fn unobservable_directions_json(answer: &RankAnswer) -> Value {
+    answer.branches.first().and_then(|branch| branch.motions.as_ref()).map_or(Value::Null, motions_json)
 }
 
 /// The same as JSON.

@@ -1,5 +1,6 @@
 //! The extremes, as JSON and as tables.
 
+use crate::layout::counted;
 use crate::names::{by_default_text, ranges_json};
 use crate::stress::plot::{conditioning_picture, lines_picture, ranks_text, scalings_picture};
 use palmistry_workbench::tradeoff::stress::{
@@ -304,8 +305,11 @@ pub fn stress_text(studies: &[StressStudy]) -> String {
         let (rows, columns) = study.remaining;
         let _ = writeln!(
             out,
-            "\n{} ({}): {} states, {}, {rows} by {columns} without unit rows",
-            study.title, study.file, study.dimension, study.rows
+            "\n{} ({}): {}, {}, {rows} by {columns} without unit rows",
+            study.title,
+            study.file,
+            counted(study.dimension, "state"),
+            study.rows
         );
         if !study.by_default.is_empty() {
             let _ = writeln!(out, "  {}", by_default_text(&study.by_default));
@@ -314,7 +318,7 @@ pub fn stress_text(studies: &[StressStudy]) -> String {
         out.push('\n');
         scalings_text(study, &mut out);
         let states = study.units.first().map_or(0, |row| row.states);
-        let _ = writeln!(out, "\n  at {states} states of the box and of the sets");
+        let _ = writeln!(out, "\n  at {} of the box and of the sets", counted(states, "state"));
         units_text(study, &mut out);
         if study.interrupted {
             let _ = writeln!(out, "  interrupted: this is what was finished until then");

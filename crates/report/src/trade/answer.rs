@@ -144,15 +144,20 @@ pub fn trade_front_table(trade: &Trade) -> Vec<[String; 8]> {
 pub fn trade_text(trade: &Trade) -> String {
     let mut out = String::new();
     let ranks: Vec<String> =
-        trade.certified_ranks.iter().map(|(rank, count)| format!("{rank} at {count} states")).collect();
+        trade.certified_ranks.iter().map(|(rank, count)| format!("{rank} at {}", counted(*count, "state"))).collect();
     let _ = writeln!(out, "{}\nfields: {}", trade.title, fields_text(&trade.fields));
     if !trade.by_default.is_empty() {
         let _ = writeln!(out, "{}", by_default_text(&trade.by_default));
     }
     let _ = writeln!(
         out,
-        "rows: {}, {} by {}, {} entries vary; {} states of the sample box, seed {}",
-        trade.rows, trade.size.0, trade.size.1, trade.varying, trade.states, trade.seed
+        "rows: {}, {} by {}, {} entries vary; {} of the sample box, seed {}",
+        trade.rows,
+        trade.size.0,
+        trade.size.1,
+        trade.varying,
+        counted(trade.states, "state"),
+        trade.seed
     );
     if !trade.lie_derivatives.is_empty() {
         let _ = writeln!(out, "Lie derivatives: {}", trade.lie_derivatives.join(", "));
