@@ -22,6 +22,7 @@ const OLD: &[(&str, &str)] = &[
     ("restated", "holds by definition"),
     ("of them on their own", "independent, the rest consequential"),
     ("where it drops", "the singular set"),
+    ("where-it-drops", "--singular-set"),
     ("where the rank drops", "the singular set"),
     ("on which the rank drops", "the singular set, rank-deficient states"),
     ("it is lower", "rank-deficient"),
@@ -65,7 +66,8 @@ const OLD: &[(&str, &str)] = &[
 ];
 
 /// Where an old word stays: the end of a file's path, a part of the line, and why.
-const KEPT: [(&str, &str, &str); 7] = [
+const KEPT: [(&str, &str, &str); 8] = [
+    ("src/command/rank.rs", "where-it-drops", "the old name of an option, which is still read"),
     ("crates/scenes/src/scene/keys.rs", "blind", "the old name of a key, which is still read"),
     ("crates/scenes/src/scene/mod.rs", "blind", "the old name of a key, which is still read"),
     ("book/src/scenes.md", "and `blind`; the old names are still read", "it says what a key was called"),
