@@ -246,7 +246,7 @@ fn the_least_observable_state_is_that_of_the_table() {
     let worst =
         table["of"].as_array().unwrap().iter().map(|row| row["worst"].as_f64().unwrap()).fold(0.0, f64::max);
     near(worst, most);
-    let text = rank_text(&answer, false);
+    let text = rank_text(&answer, true);
     assert!(text.contains("least observable: ") && !text.contains("conditioned"), "{text}");
 }
 

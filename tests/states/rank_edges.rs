@@ -48,13 +48,13 @@ fn a_state_that_is_certified_to_be_seen_is_not_said_not_to_be() {
         let y = &deviations(&answer)[1];
         let x = &deviations(&answer)[0];
         assert!(x.is_observable && y.is_observable && x.infinite + y.infinite > 0, "{text}: {x:?} {y:?}");
-        let told = rank_text(&answer, false);
+        let told = rank_text(&answer, true);
         assert!(told.contains("  unknown") && !told.contains("unobservable"), "{told}");
     }
     // two states that are not told apart are not seen
     let answer = ranks(&system("x + y", "x in [-1, 1] y in [2, 3]"));
     assert!(deviations(&answer).iter().all(|state| !state.is_observable && state.infinite == 40));
-    let told = rank_text(&answer, false);
+    let told = rank_text(&answer, true);
     assert!(!told.contains("  unknown") && told.contains("  unobservable"), "{told}");
 }
 

@@ -203,7 +203,7 @@ pub fn global_text(answer: &GlobalAnswer) -> String {
 /// What was found: the table of unknowns, a witness, identifiable functions.
 pub(super) fn global_findings(answer: &GlobalAnswer, out: &mut String) {
     let found = &answer.solutions;
-    let _ = writeln!(out, "how many values of each unknown give the same outputs, generically");
+    let _ = writeln!(out, "the number of solutions of each unknown for given outputs, generically:");
     let width = |of: &dyn Fn(&SolutionsOf) -> usize| found.unknowns.iter().map(of).max().unwrap_or(0);
     let names = width(&|of_it| of_it.name.chars().count());
     let verdicts = width(&|of_it| strongest(of_it).len());
