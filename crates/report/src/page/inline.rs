@@ -9,11 +9,16 @@ pub(super) fn in_line(text: &str, looks: &Looks) -> Markup {
     formula_mathml_in(text, looks).map_or_else(|| html! { (text) }, PreEscaped)
 }
 
+/// A condition of more letters may be wider than a narrow screen.
+const LONG: usize = 40;
+
 /// Conditions as mathematics; as they are written where they are none.
 pub(super) fn conditions(written: &[String], looks: &Looks) -> Markup {
     html! {
         @match conditions_mathml(written, looks) {
-            Some(formula) => { span.f { (PreEscaped(formula)) } }
+            // long ones scroll in a box of their own; a line breaks behind each of the others
+            Some(formula) if written.iter().any(|one| one.len() > LONG) => { span.f { (PreEscaped(formula)) } }
+            Some(formula) => { (PreEscaped(formula)) }
             None => { code { (written.join(", ")) } }
         }
     }
@@ -68,24 +73,27 @@ pub(super) fn lie_derivative(text: &str, fields: Option<&[&str]>, looks: &Looks)
         Some(fields) => fields.contains(&field),
         None => !field.is_empty() && begins_a_term(behind),
     };
-    let mut operators = Vec::new();
+    let mut operators: Vec<(&str, usize)> = Vec::new();
     let mut rest = text;
     while let Some((first, behind)) = rest.split_once(' ')
         && let Some(field) = first.strip_prefix('L').filter(|field| is_one(field, behind))
     {
-        operators.push(operator(field, looks));
+        match operators.last_mut() {
+            Some((last, times)) if *last == field => *times += 1,
+            _ => operators.push((field, 1)),
+        }
         rest = behind;
     }
     html! {
         span.nb[rest.len() < SHORT] {
-            @if !operators.is_empty() { math { @for operator in &operators { (PreEscaped(operator)) } } " " }
+            @if !operators.is_empty() { math { @for (field, times) in &operators { (PreEscaped(operator(field, *times, looks))) } } " " }
             (in_line(rest, looks))
         }
     }
 }
 
-/// `L` with the field below the line, as an element of MathML.
-fn operator(field: &str, looks: &Looks) -> String {
+/// `L` with the field below the line, and above it how many times it is taken, as an element of MathML.
+fn operator(field: &str, times: usize, looks: &Looks) -> String {
     let bare = field.trim_end_matches('\'');
     let dashes = "<mo>\u{2032}</mo>".repeat(field.len() - bare.len());
     let formula = formula_mathml_in(bare, looks);
@@ -94,7 +102,10 @@ fn operator(field: &str, looks: &Looks) -> String {
         Some(inner) => inner.to_owned(),
         None => html! { mtext { (bare) } }.into_string(),
     };
-    format!("<msub><mi>L</mi><mrow>{index}{dashes}</mrow></msub>")
+    match times {
+        1 => format!("<msub><mi>L</mi><mrow>{index}{dashes}</mrow></msub>"),
+        _ => format!("<msubsup><mi>L</mi><mrow>{index}{dashes}</mrow><mn>{times}</mn></msubsup>"),
+    }
 }
 
 #[cfg(test)]
@@ -113,6 +124,7 @@ mod tests {
                 "<span class=\"nb\"><math>{f}{delta}</math> <math><msub><mi>v</mi><mi>y</mi></msub></math></span>"
             )
         );
+        assert!(of("Lf Lf Lf vy").contains("<msubsup><mi>L</mi><mrow><mi>f</mi></mrow><mn>3</mn></msubsup>"));
         // an output that begins with the letter is no operator
         assert!(!of("Lf").contains("<mrow>") && !of("Lg x").contains("<mrow><mi>g"));
         let unknown = |text: &str| lie_derivative(text, None, &none).into_string();

@@ -1,5 +1,6 @@
 //! What is observable generically, on the page: a sentence, and a table of the unknowns.
 
+use super::entry::raised;
 use super::inline::{conditions, in_line, numbers_first};
 use crate::ranks::generic::{generic_sentence, unknown_verdict};
 use maud::{Markup, html};
@@ -16,6 +17,12 @@ pub(super) fn unknowns(ranks: &[SetRank], looks: &Looks) -> Markup {
     }
 }
 
+/// A sentence whose powers of two, bounds on probabilities, are set above the line.
+fn powers_raised(sentence: &str) -> String {
+    let word = |word: &str| if word.starts_with("2^-") { raised(word) } else { word.to_owned() };
+    sentence.split(' ').map(word).collect::<Vec<_>>().join(" ")
+}
+
 fn of_branch(branch: &BranchAnswer, looks: &Looks) -> Markup {
     let sentence = generic_sentence(&branch.generic);
     let mut letters = sentence.chars();
@@ -23,7 +30,7 @@ fn of_branch(branch: &BranchAnswer, looks: &Looks) -> Markup {
     let first = letters.next().map(|letter| letter.to_uppercase().to_string()).unwrap_or_default();
     html! {
         p {
-            (first) (letters.as_str())
+            (first) (powers_raised(letters.as_str()))
             @if !branch.conditions.is_empty() { ", where " (conditions(&written, looks)) }
             "."
         }
