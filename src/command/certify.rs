@@ -108,7 +108,7 @@ impl Certify {
     pub fn run(self) -> miette::Result<Status> {
         let begin = Instant::now();
         let mut system = System::read(&self.file)?;
-        let ranges = system.given_ranges(&self.ranges)?;
+        let ranges = system.given_ranges(&self.ranges).map_err(Unusable::given)?;
         let rows = match (self.rows, self.order) {
             (Rows::Own, Some(_)) => {
                 return Err(Unusable::report(
@@ -277,7 +277,10 @@ impl Certify {
     fn map_of(&self, system: &System) -> miette::Result<Option<(Symbol, Symbol)>> {
         match self.map.as_slice() {
             [] => Ok(None),
-            [x, y] if x.trim() != y.trim() => Ok(Some((system.own_symbol(x)?, system.own_symbol(y)?))),
+            [x, y] if x.trim() != y.trim() => {
+                let symbol = |name| system.own_symbol(name).map_err(Unusable::given);
+                Ok(Some((symbol(x)?, symbol(y)?)))
+            }
             _ => Err(Unusable::report(Code::Option, "a map has two coordinates", "as in --map omega0,r1")),
         }
     }

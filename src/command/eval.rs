@@ -48,7 +48,7 @@ pub(crate) struct Eval {
 impl Eval {
     pub fn run(self) -> miette::Result<Status> {
         let mut system = System::read(&self.file)?;
-        let given = system.given_values(&self.at)?;
+        let given = system.given_values(&self.at).map_err(Unusable::given)?;
         let digits = usize::from(self.digits);
         let value =
             evaluate(&mut system, &self.expression, &given, digits, self.verdict.into()).map_err(explain)?;

@@ -59,7 +59,7 @@ use given_files::{Given, Kind, Written};
 use miette::{Diagnostic, Report};
 use output::Form;
 use palmistry::file;
-use palmistry::system::Code;
+use palmistry::system::{Code, GivenError};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -175,6 +175,11 @@ impl Unusable {
             help.push_str(what_to_do::about(&message));
         }
         Report::new(Unusable { code, message, help })
+    }
+
+    /// A value, a range or a name in an option that is none.
+    pub fn given(why: GivenError) -> Report {
+        Unusable::report(Code::Option, why.message, why.help.unwrap_or_default())
     }
 }
 

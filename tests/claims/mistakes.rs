@@ -6,7 +6,7 @@ use std::path::Path;
 const RIGHT: &str = "system \"s\"\nstate phi, omega\nparam k = 2\nangle phi\ndrift f\n  phi' = omega\n  omega' = -k*sin(phi)\noutput phi\n";
 
 /// A text of the right file, what stands in its place, and words of the advice.
-const MISTAKES: [(&str, &str, &str); 105] = [
+const MISTAKES: [(&str, &str, &str); 120] = [
     ("-k*sin", "-k sin", "a product is written with '*', as in k*sin"),
     ("-k*sin", "-2 sin", "a product is written with '*', as in 2*sin"),
     ("-k*sin", "-2k*sin", "a product is written with '*'"),
@@ -46,6 +46,21 @@ const MISTAKES: [(&str, &str, &str); 105] = [
     ("sin(phi)", "arctan(k)", "it is called 'atan'"),
     ("sin(phi)", "sgn(omega)", "it is called 'sign'"),
     ("sin(phi)", "sine(phi)", "perhaps you meant 'sin'"),
+    ("omega' =", "d omega/dt =", "a rate of change is written with a prime, as in omega' = ..."),
+    ("omega' =", "Derivative(omega, t) =", "a rate of change is written with a prime, as in omega' = ..."),
+    ("omega' =", "omega' ->", "write '='"),
+    ("omega' =", "omega_ddot =", "a second derivative needs a state of its own, as in omega' = v"),
+    ("-k*sin(phi)", "-k*d(phi)/dt", "a derivative along the drift f is L(f, x)"),
+    ("-k*sin(phi)", "-k*omega_dot", "the rate of 'omega' has no name"),
+    ("-k*sin(phi)", "-k*sgn omega", "a function has its argument in brackets, as in sign(omega)"),
+    ("-k*sin(phi)", "-k*sin^2 phi", "a power of a function stands behind its brackets, as in sin(phi)^2"),
+    ("-k*sin(phi)", "-1e3k*phi", "a product is written with '*', as in 1e3*k"),
+    ("output phi", "output phi\nclaim a: system is observable", "as in observable(x, y), or about the rank"),
+    ("-k*sin(phi)", "-k*phi^1/2", "a root is written sqrt(x), or with a bracket, as in x^(1/2)"),
+    ("-k*sin(phi)", "-k*sin(phi) + rand()", "nothing is random in a file"),
+    ("k = 2", "k = 2 unknown : stiffness", "a unit stands before the word, as in param k = 2 : m/s unknown"),
+    ("output phi", "output phi\ny(t) = phi", "without (t): a rate is written y' = ..."),
+    ("output phi", "output phi\nsample omega in [-1 to 1]", "the ends of a range have ',' between them"),
     ("\"s\"", "\u{201c}s\u{201d}", "straight quotation marks"),
     ("output phi", "output phi\nclaim a: L(f, phi) == omega", "an equation has one '='"),
     ("output phi", "output phi\nclaim a: L(f, phi) = 0 at omega = 0", "is written with 'where'"),

@@ -143,6 +143,13 @@ impl System {
                     ),
                 })
             }
+            ("dt" | "Dt", Wanted::Name) => {
+                Some("a derivative along the drift f is L(f, x), as in let v = L(f, x)".to_owned())
+            }
+            (_, Wanted::Name) if rate_of(name).is_some_and(|state| self.find_symbol(state).is_some()) => {
+                let state = rate_of(name).unwrap_or_default();
+                Some(format!("the rate of '{state}' has no name: below the drift f it is L(f, {state})"))
+            }
             ("e", Wanted::Name) => Some("Euler's number to a power is written exp(x)".to_owned()),
             ("i" | "j", Wanted::Name) => Some(format!(
                 "'{name}' has no value: numbers are real, and an index has its range behind 'for'"
@@ -167,4 +174,9 @@ impl System {
             _ => None,
         }
     }
+}
+
+/// The state of a name such as `omega_dot`.
+fn rate_of(name: &str) -> Option<&str> {
+    name.strip_suffix("_dot").or_else(|| name.strip_suffix("dot")).filter(|state| !state.is_empty())
 }

@@ -50,6 +50,12 @@ impl Asked<'_> {
                 let (verdict, evidence) = in_sign_cell(system, &part.cell, work)?;
                 found.push((part.branch, verdict, evidence));
             }
+            let is_empty = |(_, verdict, _): &DecidedBranch| matches!(verdict, OnOneBranch::Empty(_));
+            if found.iter().all(is_empty)
+                && let Some(on_kinks) = self.on_kinks(system, branch, rng)?
+            {
+                return Ok(on_kinks);
+            }
             return Ok(found);
         }
         // boxes are slow where they cannot decide

@@ -302,9 +302,8 @@ fn where_equal(
         Some(doubt) => format!(
             "both sides are equal wherever they are defined, so that it fails there, which the checker does not confirm: {doubt}"
         ),
-        None => {
-            "both sides are equal wherever they are defined, and no state was found at which they are".to_owned()
-        }
+        None => "both sides are equal wherever they are defined, and no state was found at which they are"
+            .to_owned(),
     }))
 }
 

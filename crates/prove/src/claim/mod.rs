@@ -18,6 +18,7 @@ mod identity;
 mod inequality;
 mod irreducible;
 mod isolated;
+mod kinks;
 mod pieces;
 mod point;
 mod pole;

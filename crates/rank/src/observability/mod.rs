@@ -19,6 +19,7 @@ mod fibre;
 mod flow;
 mod generic;
 mod interior;
+mod kinks;
 mod locus;
 mod needed;
 mod nested;
@@ -62,6 +63,8 @@ pub use generic::{
 pub(crate) use generic::{OutputRows, Rows};
 #[doc(hidden)]
 pub use interior::{Interior, interior};
+#[doc(hidden)]
+pub use kinks::{KinkRows, rows_at_kinks};
 #[doc(hidden)]
 pub use locus::AVOIDED;
 pub(crate) use locus::{ATTEMPTS, Source};

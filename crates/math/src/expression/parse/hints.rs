@@ -131,7 +131,11 @@ const CHARACTERS: [(char, char, &str); 12] = [
 const OF_NAMES: &str = "this character belongs to no name: names have the letters a-z, Greek letters, digits and '_', as in x_dot or x_hat";
 
 /// By the word at the place, or by the one before it.
-const WORDS: [(&str, &str); 5] = [
+const WORDS: [(&str, &str); 6] = [
+    (
+        "rand randn random",
+        "nothing is random in a file: states are drawn from the ranges of 'sample', and a scene has noise",
+    ),
     ("if then else", NO_CASES),
     ("and or", SEVERAL),
     ("forall exists", "a claim is about all states and values for which its terms exist: leave 'forall' out"),
@@ -218,6 +222,11 @@ fn of_numbers(line: &str, rest: &str) -> Option<String> {
         {
             "an exponent is written with 'e', as in 2e-3"
         }
+        Some('e' | 'E') if begins_with_digit(&word[1..]) => {
+            let end = word[1..].find(|c| !digit(c)).map(|end| 1 + end)?;
+            let number = &line[line.len() - number(line)..];
+            return Some(format!("{PRODUCT}, as in {number}{}*{}", &word[..end], &word[end..]));
+        }
         Some('i' | 'j') if word.len() == 1 => "there are no complex numbers",
         None if rest.starts_with('%') => {
             "a percentage is written as a fraction, as in 0.5 for 50%; a comment begins with '#'"
@@ -274,7 +283,23 @@ fn by_words(line: &str, rest: &str) -> Option<String> {
 }
 
 /// Names of the derivative by time.
-const DERIVATIVES: [&str; 7] = ["d", "D", "Dt", "der", "diff", "deriv", "ddt"];
+const DERIVATIVES: [&str; 8] = ["d", "D", "Dt", "der", "diff", "deriv", "ddt", "Derivative"];
+
+/// What functions are called elsewhere, and here.
+const FUNCTIONS: [(&str, &str); 12] = [
+    ("sgn", "sign"),
+    ("signum", "sign"),
+    ("ln", "log"),
+    ("arcsin", "asin"),
+    ("arccos", "acos"),
+    ("arctan", "atan"),
+    ("tg", "tan"),
+    ("ctg", "cot"),
+    ("sh", "sinh"),
+    ("ch", "cosh"),
+    ("th", "tanh"),
+    ("fabs", "abs"),
+];
 
 /// What may help where the prime of a rate of change is missing: the name that should have one ends before the place.
 fn of_a_rate(before: &str, rest: &str) -> Option<String> {
@@ -299,6 +324,10 @@ fn of_a_rate(before: &str, rest: &str) -> Option<String> {
         // `2x`
         return Some(product(&name[..digits], &name[digits..]));
     }
+    let left = line.trim_end();
+    if rest.starts_with("/dt") && left.trim_start() == "d" {
+        return prime(name);
+    }
     if let Some(left) =
         line.trim_end().rsplit(|c: char| !is_word(c)).next().filter(|_| !line.trim().is_empty())
     {
@@ -311,6 +340,18 @@ fn of_a_rate(before: &str, rest: &str) -> Option<String> {
     }
     if let Some(state) = name.strip_suffix("_next").filter(|_| rest.starts_with('=')) {
         return step(state);
+    }
+    if let Some(state) =
+        name.strip_suffix("_ddot").or_else(|| name.strip_suffix("ddot")).filter(|state| !state.is_empty())
+    {
+        return Some(format!(
+            "a second derivative needs a state of its own, as in {state}' = v and v' = ..."
+        ));
+    }
+    if rest.strip_prefix("(t)").is_some_and(|rest| rest.trim_start_matches(' ').starts_with('=')) {
+        return Some(format!(
+            "without (t): a rate is written {name}' = ..., a measured quantity is declared as in output x"
+        ));
     }
     if name == "end" {
         return Some("an entry ends by itself: leave 'end' out".to_owned());
@@ -336,6 +377,7 @@ fn of_a_rate(before: &str, rest: &str) -> Option<String> {
 
 /// A product of two names, or of something else.
 fn product(left: &str, right: &str) -> String {
+    let left = FUNCTIONS.iter().find(|(other, _)| *other == left).map_or(left, |(_, here)| here);
     match is_function(left) {
         true => format!("a function has its argument in brackets, as in {left}({right})"),
         false if left.is_empty() || right.is_empty() => PRODUCT.to_owned(),
@@ -364,6 +406,14 @@ fn of_a_product(before: &str, rest: &str, what: &str) -> Option<String> {
         if is_argument && !left.is_empty() && !right.is_empty() && !is_function(left) {
             return format!(
                 "arguments have ',' between them, as in ({left}, {right}); {PRODUCT}, as in {left}*{right}"
+            );
+        }
+        if left.starts_with(|c: char| c.is_ascii_digit())
+            && let Some(base) = before.trim_end().strip_suffix(left).and_then(|base| base.strip_suffix('^'))
+            && let Some(function) = base.rsplit(|c| !is_word(c)).next().filter(|name| is_function(name))
+        {
+            return format!(
+                "a power of a function stands behind its brackets, as in {function}({right})^{left}"
             );
         }
         let left = if left.starts_with(|c: char| c.is_ascii_digit()) { "" } else { left };

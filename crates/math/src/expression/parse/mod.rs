@@ -16,7 +16,7 @@ pub use tokens::{
     Depth, RESERVED, Read, SPECIAL, Text, UNDECLARABLE, blank, ends_a_line, helped, keyword, list, name,
     sign, stop, within, word,
 };
-use winnow::combinator::{alt, cut_err, not, opt, preceded, separated};
+use winnow::combinator::{alt, cut_err, not, opt, peek, preceded, separated};
 use winnow::error::ErrMode;
 use winnow::prelude::*;
 use winnow::stream::{LocatingSlice, Location, Stateful};
@@ -141,16 +141,21 @@ fn power(input: &mut Text<'_>) -> Read<Expr> {
         let value = digits.parse::<i32>().ok().filter(|n| *n <= LARGEST_EXPONENT);
         Ok((value.map(|n| if minus { -n } else { n }), end))
     };
-    let in_brackets = (sign("("), bare, closing(")")).map(|((), (n, _), end)| (n, end));
-    match opt(alt((in_brackets, bare))).parse_next(input)? {
-        Some((Some(n), end)) => {
+    let in_brackets = (sign("("), bare, closing(")")).map(|((), (n, _), end)| (n, end, true));
+    match opt(alt((in_brackets, bare.map(|(n, end)| (n, end, false))))).parse_next(input)? {
+        Some((Some(n), end, is_in_brackets)) => {
             if opt(sign("^")).parse_next(input)?.is_some() {
                 return stop(at, "one exponent; write (a^b)^c with its brackets", None);
+            }
+            let divides = ('/', take_while(1.., |c: char| c.is_ascii_digit()));
+            if n == 1 && !is_in_brackets && opt(peek(divides)).parse_next(input)?.is_some() {
+                let help = "x^1/2 is half of x: a root is written sqrt(x), or with a bracket, as in x^(1/2)";
+                return stop(at, "an exponent in brackets, as in x^(1/2)", Some(help.to_owned()));
             }
             let span = base.span.start..end;
             Ok(Expr { kind: ExprKind::Power(Box::new(base), n), span })
         }
-        Some((None, _)) => stop(at, format!("an exponent of at most {LARGEST_EXPONENT}"), None),
+        Some((None, ..)) => stop(at, format!("an exponent of at most {LARGEST_EXPONENT}"), None),
         None => real_power(input, base),
     }
 }

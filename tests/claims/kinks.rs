@@ -1,0 +1,126 @@
+//! Ranks at states where the argument of an absolute value vanishes. The oracle takes one-sided differences of the outputs' derivatives, which are written here by hand.
+
+use palmistry::claim::Verdict;
+use palmistry::{System, decide_all};
+
+fn word(model: &str, claim: &str) -> (String, String) {
+    let system: System = format!("{model}\nclaim c: {claim}\n").parse().unwrap();
+    let outcome = decide_all(&system, 1, &false.into(), &|_| ()).remove(0);
+    let why = match &outcome.verdict {
+        Verdict::Undecided { why } => why.clone(),
+        Verdict::Proved { engine, .. } => engine.clone(),
+        _ => String::new(),
+    };
+    (outcome.verdict.word().to_owned(), why)
+}
+
+/// A system of two states, a state in its kink, and the outputs' derivatives that are continuously differentiable there.
+struct Case {
+    model: &'static str,
+    kink: &'static str,
+    at: [f64; 2],
+    smooth: [fn([f64; 2]) -> f64; 2],
+}
+
+const CASES: [Case; 5] = [
+    // a tyre whose force grows less and less: straight driving
+    Case {
+        model: "system \"s\" state beta, r param C = 5 drift f beta' = -r - C*beta/(1 + abs(beta)) r' = C*beta/(1 + abs(beta)) - r output r",
+        kink: "beta = 0, r = 0",
+        at: [0.0, 0.0],
+        smooth: [|[_, r]| r, |[beta, r]| 5.0 * beta / (1.0 + beta.abs()) - r],
+    },
+    Case {
+        model: "system \"s\" state beta, r param C = 5 drift f beta' = -r - C*beta/(1 + abs(beta)) r' = C*beta/(1 + abs(beta)) - r output r",
+        kink: "beta = 0",
+        at: [0.0, 0.7],
+        smooth: [|[_, r]| r, |[beta, r]| 5.0 * beta / (1.0 + beta.abs()) - r],
+    },
+    // a drag that is the square of the velocity, with its sign
+    Case {
+        model: "system \"s\" state x, v drift f x' = v v' = -v*abs(v) - x output x",
+        kink: "v = 0",
+        at: [0.3, 0.0],
+        smooth: [|[x, _]| x, |[_, v]| v],
+    },
+    // a tank whose inflow stops at a level
+    Case {
+        model: "system \"s\" state a, b drift f a' = max(b - a, 0)^2 + b b' = -b output a",
+        kink: "a = b",
+        at: [0.4, 0.4],
+        smooth: [|[a, _]| a, |[a, b]| (b - a).max(0.0).powi(2) + b],
+    },
+    // two kinks that meet
+    Case {
+        model: "system \"s\" state x, y drift f x' = y + x*abs(x) + y*abs(y) y' = -x output x",
+        kink: "x = 0, y = 0",
+        at: [0.0, 0.0],
+        smooth: [|[x, _]| x, |[x, y]| y + x * x.abs() + y * y.abs()],
+    },
+];
+
+#[test]
+fn a_rank_is_full_where_enough_derivatives_are_continuously_differentiable() {
+    for case in &CASES {
+        let (found, why) = word(case.model, &format!("rank = 2 where {}", case.kink));
+        assert_eq!(found, "proved", "{} {}: {why}", case.model, case.kink);
+        assert!(why.contains("continuously differentiable at the kink"), "{why}");
+        for claim in ["rank >= 1", "rank >= 2", "1 <= rank <= 2", "observable(STATES)"] {
+            let states = case.model.split("state ").nth(1).unwrap().split(" param").next().unwrap();
+            let states = states.split(" drift").next().unwrap();
+            let claim = claim.replace("STATES", states);
+            let (found, why) = word(case.model, &format!("{claim} where {}", case.kink));
+            assert_eq!(found, "proved", "{} {claim}: {why}", case.model);
+        }
+        for claim in ["rank = 1", "rank <= 1", "rank = 3"] {
+            let (found, _) = word(case.model, &format!("{claim} where {}", case.kink));
+            assert_ne!(found, "proved", "{} {claim}", case.model);
+        }
+        // from every side the same slopes, and those of rank two
+        let step = 1e-6;
+        let mut all: Vec<[[f64; 2]; 2]> = Vec::new();
+        for signs in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
+            let slope = |of: fn([f64; 2]) -> f64, k: usize| {
+                let mut there = case.at;
+                there[k] += signs[k] * step;
+                (of(there) - of(case.at)) / (signs[k] * step)
+            };
+            all.push(case.smooth.map(|of| [slope(of, 0), slope(of, 1)]));
+        }
+        for one in &all {
+            for (row, first) in one.iter().zip(&all[0]) {
+                assert!(row.iter().zip(first).all(|(a, b)| (a - b).abs() < 1e-4), "{}", case.model);
+            }
+            assert!((one[0][0] * one[1][1] - one[0][1] * one[1][0]).abs() > 0.5, "{}", case.model);
+        }
+    }
+}
+
+/// What has no continuous differential does not count, and what it would add is not decided.
+#[test]
+fn what_is_not_differentiable_at_a_kink_decides_nothing() {
+    let friction = "system \"s\" state v, w param k unknown drift f v' = -k*abs(v - w)*(v - w) w' = k*abs(v - w)*(v - w) output v";
+    // all are continuously differentiable, and those that are looked at vanish
+    let (found, why) = word(friction, "rank = 1 where v = w");
+    assert_eq!(found, "undecided");
+    assert!(why.contains("it lies in a kink, and the first Lie derivatives do not decide it"), "{why}");
+    let tyre = "system \"s\" state beta, r param C unknown drift f beta' = -r - C*beta/(1 + abs(beta)) r' = C*beta/(1 + abs(beta)) - r output r";
+    let (found, why) = word(tyre, "rank = 3 where beta = 0");
+    assert_eq!(found, "undecided");
+    assert!(why.contains("L(f, L(f, r)) has no continuous differential there"), "{why}");
+    assert_eq!(word(tyre, "rank >= 2 where beta = 0").0, "proved");
+    assert_eq!(word(friction, "rank >= 1 where v = w").0, "proved");
+    assert_eq!(word(friction, "rank >= 2 where v = w").0, "undecided");
+    assert_eq!(word(friction, "observable(v, w) where v = w").0, "undecided");
+    // off the kink nothing has changed
+    assert_eq!(word(friction, "rank = 3").0, "proved");
+    // the output has a kink itself; a rate jumps; a root has no slope; a map leads from one side to the other
+    for (model, claim) in [
+        ("system \"s\" state x drift f x' = 1 output abs(x)", "rank = 1 where x = 0"),
+        ("system \"s\" state x, v drift f x' = v v' = -sign(v) output x", "rank = 2 where v = 0"),
+        ("system \"s\" state x, v drift f x' = v v' = -sqrt(abs(v)) output x", "rank = 2 where v = 0"),
+        ("system \"s\" state x, y drift f x+ = y + x*abs(x) y+ = x output x", "rank = 2 where x = 0"),
+    ] {
+        assert_eq!(word(model, claim).0, "undecided", "{model}");
+    }
+}
