@@ -116,7 +116,7 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2], looks: &Look
         let mut chart = ChartBuilder::on(&plot)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
-            .margin_right(16)
+            .margin_right(20)
             .x_label_area_size(38)
             .y_label_area_size(room((map.y.low, map.y.high), |v| number(v, spans[1])))
             .build_cartesian_2d(map.x.low..map.x.high, map.y.low..map.y.high)?;
@@ -225,6 +225,7 @@ pub(crate) fn slope(slope: &Slope, title: &str, unit: Option<&str>) -> String {
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
+            .margin_right(20)
             .x_label_area_size(36)
             .y_label_area_size(62)
             .build_cartesian_2d((near..far).log_scale(), (lowest..highest).log_scale())?;

@@ -48,7 +48,7 @@
     }).concat([...document.querySelectorAll('svg text')].filter(text => {
       const [own, around] = [text.getBoundingClientRect(), text.ownerSVGElement.getBoundingClientRect()];
       return own.width > 0 && (own.left < around.left - 1 || own.right > around.right + 1 || own.bottom > around.bottom + 2);
-    })).slice(0, 5).map(describe);
+    })).slice(0, 5).map(element => `${describe(element)} ${element.closest('svg')?.getAttribute('aria-label') ?? ''}`);
     // what scrolls by itself shows that there is more: its shadows scroll with it
     found.scrolling = [...document.body.querySelectorAll('*')].filter(element =>
       element.clientWidth && ['auto', 'scroll'].includes(getComputedStyle(element).overflowX) && element.scrollWidth > element.clientWidth + 1);

@@ -20,6 +20,7 @@ pub fn region_curve(answer: &RegionAnswer, title: &str) -> String {
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
+            .margin_right(28)
             .x_label_area_size(34)
             .y_label_area_size(62)
             .build_cartesian_2d(
@@ -137,6 +138,7 @@ fn drawn(map: &RegionMap, title: &str, units: [Option<&str>; 2], most_patches: u
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
+            .margin_right(28)
             .x_label_area_size(38)
             .y_label_area_size(room((map.y.low, map.y.high), |v| number(v, map.y.high - map.y.low)))
             .build_cartesian_2d(map.x.low..map.x.high, map.y.low..map.y.high)?;

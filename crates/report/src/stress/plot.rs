@@ -51,9 +51,20 @@ impl Bars<'_> {
         found
     }
 
+    /// Its title, in as many lines as it needs.
+    fn titles(&self) -> Vec<String> {
+        in_lines(&self.title, 54)
+    }
+
+    /// What stands below the title, line by line: nothing where nothing happens.
+    fn remarks(&self) -> Vec<String> {
+        let below = self.below.iter().filter(|_| !self.is_calm());
+        below.flat_map(|text| in_lines(text, 60)).collect()
+    }
+
     /// What is written over the bars.
     fn head(&self) -> i32 {
-        if self.is_calm() { 18 } else { 18 + 15 * self.below.len() as i32 }
+        3 + 15 * (self.titles().len() + self.remarks().len()) as i32
     }
 
     fn height(&self) -> i32 {
@@ -69,12 +80,16 @@ const TOP: i32 = 84;
 
 /// The chart of some rows; `ticks` are texts at parts of the width between zero and one.
 fn bars(title: &str, axis: &str, ticks: &[(f64, String)], rows: &[Bars<'_>]) -> String {
-    let bottom = TOP + rows.iter().map(Bars::height).sum::<i32>();
+    let titles = in_lines(title, 50);
+    let down = 17 * (titles.len() as i32 - 1);
+    let bottom = TOP + down + rows.iter().map(Bars::height).sum::<i32>();
     svg((WIDTH as u32, (bottom + 44) as u32), title, |area| {
         let text = |size: i32| ("sans-serif", size).into_font().color(&INK);
         let anchored = |size: i32, h: HPos| text(size).pos(Pos::new(h, VPos::Center));
-        area.draw(&Text::new(cut(title, 58), (8, 6), text(13)))?;
-        let (mut x, mut y) = (8, 34);
+        for (line, title) in titles.iter().enumerate() {
+            area.draw(&Text::new(title.clone(), (8, 6 + 17 * line as i32), text(13)))?;
+        }
+        let (mut x, mut y) = (8, 34 + down);
         for (mark, words) in LEGEND {
             let width = 26 + 6 * words.len() as i32;
             if x + width > RIGHT {
@@ -86,19 +101,23 @@ fn bars(title: &str, axis: &str, ticks: &[(f64, String)], rows: &[Bars<'_>]) -> 
         }
         for (part, label) in ticks {
             let x = LEFT + (f64::from(RIGHT - LEFT) * part).round() as i32;
-            area.draw(&PathElement::new([(x, TOP - 4), (x, bottom)], MESH))?;
+            area.draw(&PathElement::new([(x, TOP + down - 4), (x, bottom)], MESH))?;
             area.draw(&Text::new(label.clone(), (x, bottom + 10), anchored(11, HPos::Center)))?;
         }
         let middle = ((LEFT + RIGHT) / 2, bottom + 30);
         area.draw(&Text::new(axis.to_owned(), middle, anchored(12, HPos::Center)))?;
-        let mut next = TOP;
+        let mut next = TOP + down;
         for row in rows {
             let (top, first) = (next, next + row.head());
             next += row.height();
-            area.draw(&Text::new(cut(&row.title, 62), (8, top + 2), text(12)))?;
-            for (line, below) in row.below.iter().enumerate().filter(|_| !row.is_calm()) {
+            let titles = row.titles();
+            for (line, title) in titles.iter().enumerate() {
+                area.draw(&Text::new(title.clone(), (8, top + 2 + 15 * line as i32), text(12)))?;
+            }
+            for (line, below) in row.remarks().into_iter().enumerate() {
                 let style = ("sans-serif", 11).into_font().color(&SOFT);
-                area.draw(&Text::new(cut(below, 68), (8, top + 17 + 15 * line as i32), style))?;
+                let line = (titles.len() + line) as i32;
+                area.draw(&Text::new(below, (8, top + 2 + 15 * line), style))?;
             }
             for (place, (way, marks)) in row.ways().into_iter().enumerate() {
                 let (high, low) = (first + BAR * place as i32, first + BAR * (place as i32 + 1) - 2);
@@ -119,12 +138,10 @@ fn bars(title: &str, axis: &str, ticks: &[(f64, String)], rows: &[Bars<'_>]) -> 
     })
 }
 
-fn cut(text: &str, most: usize) -> String {
-    if text.chars().count() <= most {
-        text.to_owned()
-    } else {
-        text.chars().take(most - 3).chain("...".chars()).collect()
-    }
+/// A text in lines of so many letters, none of which is left out; at least one line.
+fn in_lines(text: &str, most: usize) -> Vec<String> {
+    let lines = textwrap::wrap(text, most);
+    if lines.is_empty() { vec![String::new()] } else { lines.into_iter().map(Into::into).collect() }
 }
 
 /// The bars from far to near.
@@ -208,6 +225,7 @@ pub fn conditioning_picture(study: &StressStudy, title: &str) -> String {
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(10)
+            .margin_right(26)
             .x_label_area_size(38)
             .y_label_area_size(56)
             .build_cartesian_2d(from..to, (0.7..tallest).log_scale())?;

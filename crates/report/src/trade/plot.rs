@@ -49,6 +49,7 @@ pub fn trade_plot(trade: &Trade) -> String {
         let mut chart = ChartBuilder::on(&plot)
             .caption(&trade.title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
+            .margin_right(26)
             .x_label_area_size(38)
             .y_label_area_size(46)
             .build_cartesian_2d((fastest / 1.5..slowest * 1.5).log_scale(), -3.0..ALL_DIGITS + 2.0)?;
