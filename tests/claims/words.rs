@@ -219,6 +219,26 @@ fn the_words_of_the_thesis() {
         ("4.80", "loose wording"),
         ("6.text.direction", "loose wording"),
         ("3.text.moving_palms", "loose wording"),
+        ("3.text.conjecture", "erratum"),
+        ("3.text.spiral", "loose wording"),
+        ("3.text.connected", "undecided"),
+        ("3.text.two_poses", "loose wording"),
+        ("3.text.antipodal", "consequence"),
+        ("3.text.finite", "loose wording"),
+        ("3.text.close", "consequence"),
+        ("3.text.not_on_curve", "proved"),
+        ("3.text.entire", "loose wording"),
+        ("3.text.friction", "loose wording"),
+        ("5.text.curvature", "consequence"),
+        ("5.text.invalidates", "example"),
+        ("5.text.alpha", "undecided"),
+        ("6.text.table.rates", "loose wording"),
+        ("6.text.table.space", "erratum"),
+        ("6.text.table.slow", "loose wording"),
+        ("6.text.section", "erratum"),
+        ("6.text.modes", "consequence"),
+        ("6.text.simpler", "undecided"),
+        ("6.text.same_surface", "loose wording"),
         ("4.text.linear", "proved"),
         ("4.text.two_solutions", "erratum"),
         ("4.text.convex", "loose wording"),
@@ -249,18 +269,35 @@ fn the_words_of_the_thesis() {
     ids.sort_unstable();
     let expected = [
         "3.text.area",
+        "3.text.conjecture",
         "3.text.many_poses",
         "3.text.singular",
         "4.71",
         "4.text.second_derivative",
         "5.17",
+        "6.text.section",
+        "6.text.table.space",
         "A.section2.generic",
     ];
     assert_eq!(ids, expected);
-    // each says where it stands, and whether a conclusion changes
-    for erratum in claims.iter().filter(|claim| claim["verdict"] == "erratum") {
-        let texts = ["passage", "conclusion"].map(|key| erratum[key].as_str().unwrap_or_default());
-        assert!(texts[0].contains("page") && texts[1].len() > 20, "{erratum}");
+    // each says where it stands; of a mistake, a convention and loose wording, whether a conclusion changes
+    let mut about_sentences = 0;
+    let faults = ["erratum", "print or scan", "scanning fault", "convention", "loose wording"];
+    for fault in claims.iter().filter(|claim| faults.contains(&claim["verdict"].as_str().unwrap())) {
+        let text = |key: &str| fault[key].as_str().unwrap_or_default();
+        assert!(text("passage").contains(", page"), "{fault}");
+        let is_sentence = fault["id"].as_str().unwrap().contains(".text.") && fault["quoted"].is_string();
+        match text("verdict") {
+            "erratum" | "loose wording" => {
+                assert!(text("conclusion").len() >= "none changes".len(), "{fault}");
+                let begins = |word: &str| text("remark").starts_with(word);
+                assert!(!is_sentence || begins("Overstated") || begins("False as stated"), "{fault}");
+                about_sentences += usize::from(is_sentence);
+            }
+            "convention" => assert!(text("conclusion").len() >= "none changes".len(), "{fault}"),
+            _ => {}
+        }
     }
+    assert_eq!(about_sentences, 31);
     insta::assert_json_snapshot!("words", words);
 }

@@ -20,22 +20,90 @@ pub fn errata_markdown<'o>(paper: &Paper, outcomes: impl IntoIterator<Item = &'o
         reference(paper),
     );
     verdicts_markdown(&paper.numbering, &outcomes, &mut out);
+    words_of_sentences(&outcomes, &mut out);
     for fault in Flaw::ALL {
         let of_kind = outcomes.iter().copied().filter(|outcome| outcome.fault == Some(fault) && outcome.ok);
         let of_kind = paper.numbering.in_order(of_kind);
         if of_kind.is_empty() {
             continue;
         }
-        let _ = writeln!(out, "# {}\n\n{}.\n", heading(fault), capitalised(meaning(fault.word())));
+        let _ = writeln!(
+            out,
+            "# {}\n\n{}.{}\n",
+            heading(fault),
+            capitalised(meaning(fault.word())),
+            effect(fault)
+        );
         for outcome in of_kind {
             entry(outcome, fault, &mut out);
         }
     }
+    undecided(paper, &outcomes, &mut out);
     let equations = paper.numbering.equations(outcomes);
     if !equations.is_empty() {
         table(&equations, &mut out);
     }
     out
+}
+
+/// The words with which an entry about a sentence begins, and what they mean.
+const WORDS_OF_SENTENCES: [(&str, &str); 2] = [
+    ("Overstated", "what is said is too strong or too general, and a weaker form of it holds"),
+    (
+        "False as stated",
+        "a counterexample is shown; *true where*, or *true of*, says under which condition it holds",
+    ),
+];
+
+/// With which of these words a remark begins.
+fn word_of_sentence(remark: &str) -> Option<&'static str> {
+    WORDS_OF_SENTENCES.into_iter().map(|(word, _)| word).find(|word| remark.starts_with(word))
+}
+
+/// What the words mean with which entries about sentences begin, and how many have each.
+fn words_of_sentences(outcomes: &[&Outcome], out: &mut String) {
+    let with = |word: &str| {
+        let remarks = outcomes.iter().filter(|outcome| outcome.ok && outcome.fault.is_some());
+        remarks.filter(|outcome| outcome.remark.as_deref().and_then(word_of_sentence) == Some(word)).count()
+    };
+    let counts: Vec<(usize, &str, &str)> =
+        WORDS_OF_SENTENCES.into_iter().map(|(word, means)| (with(word), word, means)).collect();
+    if counts.iter().all(|(count, _, _)| *count == 0) {
+        return;
+    }
+    let _ = writeln!(out, "Entries about sentences begin with a word of their own:\n");
+    for (count, word, means) in counts {
+        let _ = writeln!(out, "- *{word}* ({count}): {means}.");
+    }
+    out.push('\n');
+}
+
+/// Whether damage changes what the paper concludes.
+fn effect(fault: Flaw) -> &'static str {
+    match fault {
+        Flaw::PrintOrScan | Flaw::Scan => {
+            " No conclusion of the paper changes, unless an entry says so: what comes before and after has the right form."
+        }
+        Flaw::Erratum | Flaw::Convention | Flaw::Loose => "",
+    }
+}
+
+/// The statements that are neither proved nor refuted, each with the reason.
+fn undecided(paper: &Paper, outcomes: &[&Outcome], out: &mut String) {
+    let open = outcomes.iter().copied().filter(|outcome| outcome.ok && outcome.word() == "undecided");
+    let open = paper.numbering.in_order(open);
+    if open.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        out,
+        "# Undecided\n\nStatements of the paper that are neither proved nor refuted, with the reason.\n"
+    );
+    for outcome in open {
+        if let Verdict::Undecided { why } = &outcome.verdict {
+            let _ = writeln!(out, "## {}\n\n{}\n", markdown(&outcome.id), markdown(why));
+        }
+    }
 }
 
 /// Authors, title and year in a line.
@@ -108,7 +176,9 @@ fn entry(outcome: &Outcome, fault: Flaw, out: &mut String) {
         let _ = writeln!(out, "Follows {}.\n", markdown(from));
     }
     if let Some(remark) = &outcome.remark {
-        let _ = writeln!(out, "{}\n", markdown(remark));
+        let word = word_of_sentence(remark).unwrap_or_default();
+        let emphasised = if word.is_empty() { String::new() } else { format!("*{word}*") };
+        let _ = writeln!(out, "{emphasised}{}\n", markdown(&remark[word.len()..]));
     }
     if let Some(conclusion) = &outcome.conclusion {
         let _ = writeln!(out, "Conclusion: {}\n", markdown(conclusion));
