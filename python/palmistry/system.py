@@ -323,7 +323,7 @@ class System:
 
         >>> beacon = palmistry.System.parse('system "s" state x, y drift f others\\' = 0 output x^2 + y^2, x*y')
         >>> print(beacon.singular_set().text.splitlines()[2])
-        rank at most 1 where x - y = 0 (error below 2^-113)
+        rank at most 1 where x - y = 0 (error probability below 2^-113)
         """
         return _asked(SingularSet, lambda: _native.drops(self._native, seed))
 
