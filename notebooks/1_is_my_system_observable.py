@@ -24,7 +24,7 @@ from workbench import SYSTEMS
 axes = palmistry.System.read(SYSTEMS / "beacons.proof").map("px", "py", at={"theta": 0.3, "v": 1, "w": 0.2}, size=80).plot()
 
 # %% [markdown]
-# What one beacon tells, and what two, comes now.
+# What is observable with one beacon, and what with two, comes now.
 
 # %%
 import matplotlib.pyplot as plt

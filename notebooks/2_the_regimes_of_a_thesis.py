@@ -13,7 +13,7 @@
 # %% [markdown]
 # # The regimes of a thesis
 #
-# M. Moll's thesis (*Shape Reconstruction Using Active Tactile Sensors*, 2002) holds an unknown body between two palms and asks whether touch alone tells how it
+# M. Moll's thesis (*Shape Reconstruction Using Active Tactile Sensors*, 2002) holds an unknown body between two palms and asks whether touch alone determines how it
 # moves. In each of four regimes it finds so many differentials of Lie derivatives that their determinant is not zero at one state. Here they are asked
 # about at thousands, and the determinants of appendix A.2 to forty digits. Below, over the two distances from the contacts to the body's centre of mass: how well the worst of ten unknowns is observable
 # in the general regime.
@@ -96,7 +96,7 @@ figure.suptitle("Standard deviation of the worst state over its prior one (light
 plt.show()
 
 # %% [markdown]
-# The number does not depend on units. A body that does not turn tells nothing of its radii, and the slower it turns the less:
+# The number does not depend on units. The radii of a body that does not turn are unobservable, and the slower it turns the worse they are observable:
 
 # %%
 same_rate = systems["same_rate"]

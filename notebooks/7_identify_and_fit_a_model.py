@@ -13,7 +13,7 @@
 # %% [markdown]
 # # Identify a model, and fit it
 #
-# A model comes as a file of StructuralIdentifiability.jl: prey and predators, of which the prey are counted. Which of its four rates can such counts tell, what follows for the others, and what are they?
+# A model comes as a file of StructuralIdentifiability.jl: prey and predators, of which the prey are counted. Which of its four rates are identifiable from such counts, what follows for the others, and what are they?
 # Below is the answer; how it comes about is what follows.
 
 # %%
@@ -76,7 +76,7 @@ axes.legend(fontsize="small")
 plt.show()
 
 # %% [markdown]
-# ## Before any fit: what counts can tell
+# ## Before any fit: what is identifiable from counts
 #
 # Of the six unknowns two are not identifiable. The direction along which no count changes says which, and what combination of them is: hunters in another unit, `b` for each of them smaller by as much.
 

@@ -64,7 +64,7 @@ plt.show()
 # %% [markdown]
 # ## Can it know?
 #
-# The functions that simulate are the functions that are asked: they were called once, with symbols. Position, heading and bias are observable, generically; so a log can tell them, if the robot moves.
+# The functions that simulate are the functions that are asked: they were called once, with symbols. Position, heading and bias are observable, generically; so a log determines them, if the robot moves.
 
 # %%
 print(robot.source)

@@ -25,7 +25,7 @@ class Answer:
 
     @cached_property
     def json(self) -> dict[str, Any]:
-        """The object that the program prints; the page on JSON in the book tells its fields."""
+        """The object that the program prints; the page on JSON in the book lists its fields."""
         return json.loads(self._found.json())
 
     @cached_property

@@ -91,7 +91,7 @@ def call(kind, x): return turned(x)[kind == "cos"] if kind in ("sin", "cos") els
 
 @cache
 def turned(x):
-    """The sine and the cosine: of sums and multiples, by those of the angles that a state tells."""
+    """The sine and the cosine: of sums and multiples, by those of the angles that a state has."""
     spend(MADE)
     n, of = (x.args[0].args[0], x.args[1]) if x.kind == "*" and x.args[0].kind == "number" else (Fraction(1), x)
     quarters = 2 * n if of is symbol("pi") else Fraction(0 if x is number(0) else 1, 2)

@@ -142,7 +142,7 @@ def at_random(system, record, _, seed):
     return refuse(f"it has values at {found} of {TRIES} random points")
 
 def proved(system, record, evidence, seed):
-    """What is so at random points, and is shown for all states where it is an equation that can be multiplied out, or generically where fields that keep the system tell the rest."""
+    """What is so at random points, and is shown for all states where it is an equation that can be multiplied out, or generically where fields that keep the system show the rest."""
     found = at_random(system, record, evidence, seed)
     asked, of, _, conditions = system.statement(system.claims[record["id"]])
     if found[0] not in ("consistent", "half confirmed") or record["verdict"] != "proved":

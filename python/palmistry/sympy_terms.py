@@ -66,7 +66,7 @@ def symbols_of(parts: Any, more: Iterable[Any]) -> list[str]:
 
 
 def term(expression: Any, ours: Callable[[str], str]) -> Term:
-    """An expression as a term; `ours` tells what a symbol is called in the language."""
+    """An expression as a term; `ours` says what a symbol is called in the language."""
 
     def of(e: Any) -> Term:
         if isinstance(e, (sympy.Symbol, AppliedUndef)):
