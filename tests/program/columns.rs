@@ -19,8 +19,10 @@ fn is_narrow(arguments: &[&str]) {
 
 #[test]
 fn rank_has_eighty_columns() {
+    let sliding = "proofs/moll2002/constraint/friction_sliding.proof";
+    is_narrow(&["rank", sliding, "--samples", "3"]);
+    is_narrow(&["rank", sliding, "--samples", "3", "--details"]);
     for file in [
-        "proofs/moll2002/constraint/friction_sliding.proof",
         "proofs/moll2002/space/ranks.proof",
         "proofs/moll2002/general.proof",
         "proofs/benchmarks/chemostat.proof",

@@ -427,12 +427,12 @@ pub(super) fn state_lines(
     let named: Vec<String> = names.iter().map(|name| state_name(observed, name)).collect();
     let width = named.iter().map(|name| name.chars().count()).fold(8, usize::max);
     for (i, name) in named.iter().enumerate() {
-        let _ = write!(text, "    {name:<width$} {:>15.9}", recovered[i]);
+        let _ = write!(text, "    {name:<width$} {:>14.9}", recovered[i]);
         if let Some(bound) = known.bounds.get(i) {
             let _ = write!(text, "{} ± {bound:.1e}", known.worth);
         }
         if let Some(truth) = &truth {
-            let _ = write!(text, "  true {:>15.9}  error {:.1e}", truth[i], (recovered[i] - truth[i]).abs());
+            let _ = write!(text, "  true {:>14.9} error {:.1e}", truth[i], (recovered[i] - truth[i]).abs());
         }
         if let Some((_, bound)) = known.at_bounds.iter().find(|(place, _)| *place == i) {
             let _ = write!(text, "  at its bound {bound}");

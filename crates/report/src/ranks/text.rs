@@ -201,8 +201,10 @@ fn circumstances(answer: &RankAnswer, details: bool) -> Vec<String> {
             lines.push(line);
         }
     }
+    // where no state is sampled nothing is drawn
+    let is_sampled = answer.branches.iter().any(|branch| branch.stop != Stop::NotTaken);
     let by_default = drawn_by_default(answer);
-    if !by_default.is_empty() {
+    if is_sampled && !by_default.is_empty() {
         let short = || {
             let drawn = counted(by_default.len(), "symbol");
             format!("drawn by default, without a range in the file: {drawn} (--details lists them)")
