@@ -13,7 +13,12 @@ fn laid(laying: &Laying) -> String {
 /// What is advised, as text.
 pub fn runs_advice_text(scene: &SpaceScene, advice: &RunsAdvice) -> String {
     let mut out = scene.title.clone();
-    let _ = writeln!(out, "\n{} tried; the body is held to the end in {}", counted(advice.tried, "run"), advice.held);
+    let _ = writeln!(
+        out,
+        "\n{} tried; the body is held to the end in {}",
+        counted(advice.tried, "run"),
+        advice.held
+    );
     if advice.plan.is_empty() {
         out += "no run was found that holds the body to the end";
         return out;

@@ -174,7 +174,10 @@ fn windows_that_pass_alone_do_not_agree_where_they_meet() {
     assert_eq!(output.status.code(), Some(1));
     assert_eq!(json(&output)["observers"][0]["together"]["fits"], false);
     let words = String::from_utf8(palmistry(&["observe", path.to_str().unwrap()]).stdout).unwrap();
-    assert!(words.contains("windows together fail the chi-square test") && words.contains("try next ("), "{words}");
+    assert!(
+        words.contains("windows together fail the chi-square test") && words.contains("try next ("),
+        "{words}"
+    );
     // with what was learned before, too
     assert!(!windows(1, 0.025, "").1.is_sound());
     // a bias that leaves at most 0.55 deviations at a sample: neither the squares nor neighbours tell it, and the residuals drift

@@ -143,8 +143,11 @@ pub fn trade_front_table(trade: &Trade) -> Vec<[String; 8]> {
 /// What was measured, as text.
 pub fn trade_text(trade: &Trade) -> String {
     let mut out = String::new();
-    let ranks: Vec<String> =
-        trade.certified_ranks.iter().map(|(rank, count)| format!("{rank} at {}", counted(*count, "state"))).collect();
+    let ranks: Vec<String> = trade
+        .certified_ranks
+        .iter()
+        .map(|(rank, count)| format!("{rank} at {}", counted(*count, "state")))
+        .collect();
     let _ = writeln!(out, "{}\nfields: {}", trade.title, fields_text(&trade.fields));
     if !trade.by_default.is_empty() {
         let _ = writeln!(out, "{}", by_default_text(&trade.by_default));
