@@ -303,6 +303,8 @@ fn samples_text(branch: &BranchAnswer, parts: &RankTextParts<'_>, out: &mut Stri
     let lower = branch.full.rank_histogram.range(..branch.generic_rank).map(|(_, count)| count).sum::<u64>();
     if details {
         directions_text(&branch.full, short_up_to, out);
+    } else if branch.motions.is_none() && !branch.full.unobservable.is_empty() {
+        item("--details has the unobservable directions, each at one of these states", out);
     }
     digits_text(&branch.full, out);
     if lower > 0 && parts.singular_set.is_none() {
