@@ -361,3 +361,65 @@ fn problems_of_petab_are_read_for_what_they_mean() {
     let read = Problem { model, conditions, ..Problem::default() }.read().unwrap();
     assert!(read.proof.contains("sign(dose - 2.5)"), "{}", read.proof);
 }
+
+/// Cells that say that they are empty, as programs write them; bounds between which nothing is left to estimate.
+#[test]
+fn tables_of_petab_are_read_as_their_writers_mean_them() {
+    let plain = Problem::default();
+    let measurements = "observableId\tpreequilibrationConditionId\tsimulationConditionId\tmeasurement\ttime\tobservableParameters\nobs\tnan\tc1\t1\t1\tNA\nobs\tNaN\tc1\t1\t2\tNone\n".to_owned();
+    let read = Problem { measurements, ..Problem::default() }.read().unwrap();
+    assert_eq!(read.counts[3..], [1, 2], "{}", read.measurements);
+    let parameters = plain.parameters.replace("1e-3\t1e3\t1\t", "2\t2\t1\t");
+    let read = Problem { parameters, ..Problem::default() }.read().unwrap();
+    assert!(read.scene.contains("[known]\nk = 2.0"), "{}", read.scene);
+    assert_eq!(read.counts[1], 0);
+    assert!(
+        read.remarks.iter().any(|one| one == "'k' is known: its bounds are both 2"),
+        "{:?}",
+        read.remarks
+    );
+}
+
+/// A constant that begins by a state has in each experiment the value that this state has there at the start.
+#[test]
+fn constants_of_petab_may_begin_by_the_states() {
+    let plain = Problem::default();
+    let twice = "<apply><times/><cn>2</cn><ci>A</ci></apply>";
+    let assigned = format!("</listOfParameters>{}", assignment("dose", twice));
+    let model = plain.model.replace("</listOfParameters>", &assigned);
+    let model = model.replace("<ci>k</ci>", "<ci>k</ci><ci>dose</ci>");
+    // 6 in a compartment of the size 3; in the other conditions 5 and k
+    let conditions = "conditionId\tA\nc1\t\nc2\t5\nc3\tk\n".to_owned();
+    let measured = |extra: &str| format!("{}obs\tc2\t1\t1\nobs\tc3\t1\t1\n{extra}", plain.measurements);
+    let read = Problem {
+        model: model.clone(),
+        conditions: conditions.clone(),
+        measurements: measured(""),
+        ..Problem::default()
+    };
+    let scene = read.read().unwrap().scene;
+    for part in ["set = { A = 5.0, dose = \"2*5\" }", "set = { A = \"k\", dose = \"2*k\" }"] {
+        assert!(scene.contains(part), "{part} in {scene}");
+    }
+    assert_eq!(scene.matches("dose = ").count(), 3, "{scene}");
+    // the tables are asked first
+    let conditions = "conditionId\tdose\nc1\t7\n".to_owned();
+    let scene = Problem { model, conditions, ..Problem::default() }.read().unwrap().scene;
+    assert!(scene.contains("set = { dose = 7.0 }"), "{scene}");
+}
+
+/// A package that is declared and not used changes nothing; one that is used is refused by its name.
+#[test]
+fn packages_of_sbml_are_refused_where_they_are_used() {
+    let package = "http://www.sbml.org/sbml/level3/version1/comp/version1";
+    let with = |inside: &str| {
+        format!(
+            "<sbml xmlns=\"http://www.sbml.org/sbml/level3/version1/core\" xmlns:comp=\"{package}\" level=\"3\" version=\"1\" comp:required=\"true\"><model>\n{inside}<listOfCompartments><compartment id=\"c\" size=\"1\"/></listOfCompartments><listOfParameters><parameter id=\"x\" value=\"1\"/></listOfParameters><listOfRules><rateRule variable=\"x\"><math xmlns=\"http://www.w3.org/1998/Math/MathML\"><ci>x</ci></math></rateRule></listOfRules></model></sbml>"
+        )
+    };
+    import("a.xml", &with(""), &ImportQuestion::default()).unwrap();
+    let used = with("<comp:listOfSubmodels><comp:submodel comp:id=\"a\"/></comp:listOfSubmodels>");
+    let why = import("a.xml", &used, &ImportQuestion::default()).unwrap_err();
+    assert!(why.message.contains("the package 'comp' changes what the model means"), "{}", why.message);
+    assert_eq!(why.line_and_column().0, 2);
+}

@@ -209,6 +209,8 @@ struct Reading<'f> {
     budget: Budget,
     model: ForeignModel,
     starts: Vec<(String, ForeignExpr)>,
+    /// Constants that begin by the states, each with its formula.
+    by_states: Vec<(String, ForeignExpr)>,
     parameters: Vec<(String, Parameter)>,
     conditions: BTreeMap<String, Vec<(String, String)>>,
     observables: Vec<(String, Observable)>,
@@ -233,6 +235,7 @@ impl<'f> Reading<'f> {
             budget,
             model: started.model,
             starts: started.starts,
+            by_states: started.by_states,
             parameters: Vec::new(),
             conditions: BTreeMap::new(),
             observables: Vec::new(),
@@ -245,6 +248,10 @@ impl<'f> Reading<'f> {
         reading.read_measurements()?;
         reading.look_for_time();
         reading.look_at_names()?;
+        // the tables are asked first
+        let of_tables = |name: &str| reading.parameters.iter().any(|(own, _)| own == name);
+        let by_states = std::mem::take(&mut reading.by_states);
+        reading.by_states = by_states.into_iter().filter(|(name, _)| !of_tables(name)).collect();
         reading.free_constants(&started.assigned);
         reading.size_compartments(started.by_size);
         Ok(reading)
@@ -332,7 +339,7 @@ impl<'f> Reading<'f> {
     /// Starts without definitions: those may be dropped from the file.
     fn inline_definitions(&mut self) -> Result<(), Problem> {
         let definitions: BTreeMap<String, ForeignExpr> = self.model.definitions.iter().cloned().collect();
-        for (_, start) in &mut self.starts {
+        for (_, start) in self.starts.iter_mut().chain(&mut self.by_states) {
             // definitions go round in no circle: that was looked at
             for _ in 0..=definitions.len() {
                 let mut has_any = false;

@@ -73,7 +73,7 @@ impl Reading<'_> {
                         return Err(table.error(row, message, "lowerBound is the smaller one"));
                     }
                 }
-                let nominal = table.cell(row, "nominalValue").map(str::to_owned);
+                let mut nominal = table.cell(row, "nominalValue").map(str::to_owned);
                 if let Some(text) = nominal.as_deref().filter(|text| !is_number(text)) {
                     return Err(table.error(
                         row,
@@ -95,6 +95,12 @@ impl Reading<'_> {
                         "take one row out",
                     ));
                 }
+                // between equal bounds there is nothing to estimate
+                let (mut is_sought, mut bounds) = (is_sought, bounds);
+                if let Some([low, high]) = bounds.filter(|[low, high]| low == high) {
+                    (is_sought, bounds, nominal) = (false, None, Some(format!("{low:?}")));
+                    self.remarks.push(format!("'{name}' is known: its bounds are both {high}"));
+                }
                 let prior = prior(&table, row, "objectivePrior")?;
                 let starts = starts(&table, row)?;
                 self.parameters.push((name, Parameter { scale, bounds, nominal, is_sought, prior, starts }));
@@ -114,9 +120,7 @@ impl Reading<'_> {
                         continue;
                     }
                     // an empty cell of a state keeps its value
-                    let Some(cell) = row.at(at).filter(|cell| !cell.eq_ignore_ascii_case("nan")) else {
-                        continue;
-                    };
+                    let Some(cell) = row.at(at) else { continue };
                     self.spend(&table, row, column.len() + cell.len())?;
                     set.push((column.clone(), cell.to_owned()));
                 }

@@ -1,8 +1,9 @@
 //! The scene of a problem, and its measurements.
 
 use super::{Measurement, Reading, is_number};
+use crate::expression::ForeignExpr;
 use crate::names::ForeignNames;
-use palmistry_lang::Problem;
+use palmistry_lang::{Code, Problem};
 use std::fmt::Write;
 
 /// A text between quotation marks, as TOML reads it.
@@ -57,11 +58,54 @@ impl Reading<'_> {
         found
     }
 
-    fn settings(&self, condition: &str, names: &ForeignNames) -> String {
+    /// What a condition sets; `first` is the condition in which the states begin.
+    fn settings(&self, condition: &str, first: &str, names: &ForeignNames) -> Result<String, Problem> {
         let set = self.conditions.get(condition).map_or(&[][..], Vec::as_slice);
-        let pairs: Vec<(String, String)> =
+        let mut pairs: Vec<(String, String)> =
             set.iter().map(|(name, own)| (names.ours(name).to_owned(), value(own, names))).collect();
-        inline(&pairs)
+        for (id, formula) in &self.by_states {
+            if set.iter().all(|(name, _)| name != id) {
+                let formula = self.at_start(formula, first)?;
+                pairs.push((names.ours(id).to_owned(), quoted(&self.text(&formula, names)?)));
+            }
+        }
+        Ok(inline(&pairs))
+    }
+
+    /// A formula with what the states are at the start in a condition.
+    fn at_start(&self, formula: &ForeignExpr, condition: &str) -> Result<ForeignExpr, Problem> {
+        let set = self.conditions.get(condition).map_or(&[][..], Vec::as_slice);
+        let is_state = |name: &str| self.model.states.iter().any(|state| state.name == name);
+        let start = |name: &str| {
+            let own = set.iter().find(|(other, _)| other == name).map(|(_, own)| own.as_str());
+            let own = own.map(|own| match is_number(own) {
+                true => ForeignExpr::number(own, &(0..0)).unwrap_or_else(|_| ForeignExpr::name(own, &(0..0))),
+                false => ForeignExpr::name(own, &(0..0)),
+            });
+            own.or_else(|| {
+                self.starts.iter().find(|(state, _)| state == name).map(|(_, start)| start.clone())
+            })
+        };
+        let mut whole = formula.clone();
+        // a start may be a formula of other starts
+        for _ in 0..=self.model.states.len() {
+            let mut left = None;
+            whole.names(&mut |name, _| {
+                if is_state(name) {
+                    left = Some(name.to_owned());
+                }
+            });
+            let Some(name) = left else { return Ok(whole) };
+            if start(&name).is_none() {
+                let message = format!("nothing says what '{name}' is at the start");
+                return Err(Problem::new(Code::Foreign, &formula.span, message, "this formula needs it")
+                    .help("give it an initial value"));
+            }
+            whole.replace(&|name| if is_state(name) { start(name) } else { None });
+            self.budget.nodes(whole.size()).map_err(|spent| crate::too_much(&formula.span, spent))?;
+        }
+        Err(Problem::new(Code::Foreign, &formula.span, "initial values that go round in a circle", "this")
+            .help("give one of them a value of its own"))
     }
 
     pub(super) fn scene(
@@ -123,10 +167,10 @@ impl Reading<'_> {
             let _ = writeln!(out, "\n[known]\n{}", known.join("\n"));
         }
         for (name, before, condition) in self.experiments() {
-            let _ =
-                writeln!(out, "\n[experiments.{}]\nset = {}", quoted(&name), self.settings(condition, names));
+            let set = self.settings(condition, before.unwrap_or(condition), names)?;
+            let _ = writeln!(out, "\n[experiments.{}]\nset = {set}", quoted(&name));
             if let Some(before) = before {
-                let _ = writeln!(out, "before = {}", self.settings(before, names));
+                let _ = writeln!(out, "before = {}", self.settings(before, before, names)?);
             }
         }
         Ok(out)

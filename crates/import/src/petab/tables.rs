@@ -7,6 +7,9 @@ use std::collections::BTreeMap;
 /// Nobody calls a thing by a longer name.
 const LONGEST_NAME: usize = 500;
 
+/// What programs write into a cell that has nothing in it.
+const NOTHING: [&str; 9] = ["nan", "NaN", "NA", "N/A", "n/a", "<NA>", "null", "NULL", "None"];
+
 /// A row with its cells, and where it stands in the file, in bytes.
 pub(super) struct Row {
     cells: Vec<String>,
@@ -22,9 +25,10 @@ pub(super) struct Table<'f> {
 }
 
 impl Row {
-    /// The cell at a place, without blanks around it; none where it is empty.
+    /// The cell at a place, without blanks around it; none where it is empty, or says that it is.
     pub fn at(&self, column: usize) -> Option<&str> {
-        self.cells.get(column).map(String::as_str).filter(|cell| !cell.is_empty())
+        let cell = self.cells.get(column).map(String::as_str);
+        cell.filter(|cell| !cell.is_empty() && !NOTHING.contains(cell))
     }
 }
 

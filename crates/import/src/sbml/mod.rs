@@ -5,6 +5,7 @@
 
 mod kinetics;
 mod mathml;
+mod refused;
 mod xml;
 
 use super::expression::{ForeignExpr, Span};
@@ -15,9 +16,10 @@ use mathml::{Formulas, text_of};
 use palmistry_io::foreign::Budget;
 use palmistry_lang::{Code, Problem};
 use palmistry_math::number::parse_decimal;
+use refused::{refuse, refuse_packages};
 use roxmltree::Node;
 use std::collections::{BTreeMap, BTreeSet};
-use xml::{child, document, elements, is, listed, place, required, says};
+use xml::{child, document, elements, is, listed, place, required};
 
 /// A model with the values of its states at the start.
 pub(super) struct Started {
@@ -28,11 +30,25 @@ pub(super) struct Started {
     pub by_size: Vec<(String, String, ForeignExpr)>,
     /// Constants that are definitions because an initial assignment says what they are.
     pub assigned: BTreeSet<String>,
+    /// Constants without a value, which an initial assignment gives one by the states at the start.
+    pub by_states: Vec<(String, ForeignExpr)>,
 }
 
 /// Reads a model.
 pub(super) fn read(text: &str, budget: &Budget) -> Result<ForeignModel, Problem> {
-    Ok(read_started(text, budget)?.model)
+    let started = read_started(text, budget)?;
+    let moved: BTreeSet<&str> = started.model.states.iter().map(|state| state.name.as_str()).collect();
+    let Some((id, value)) = started.by_states.first() else { return Ok(started.model) };
+    // the last one is marked, as it is read from left to right
+    let mut bad = (String::new(), value.span.clone());
+    value.names(&mut |name, span| {
+        if moved.contains(name) || bad.0.is_empty() {
+            bad = (name.to_owned(), span.clone());
+        }
+    });
+    let message = format!("'{id}' begins by the value of '{}', which moves", bad.0);
+    Err(Problem::new(Code::Foreign, &bad.1, message, "this")
+        .help(format!("give '{id}' a value of its own, or make it unknown by taking the assignment out")))
 }
 
 /// Reads a model with its initial values.
@@ -63,76 +79,12 @@ pub(super) fn read_started(text: &str, budget: &Budget) -> Result<Started, Probl
     let given = reading.starts();
     let by_size = reading.by_size();
     let assigned = reading.initial_values.iter().map(|(id, _)| id.clone()).collect();
-    let model = reading.model(model)?;
+    let (model, by_states) = reading.model(model)?;
     let start = |name: &String| Some((name.clone(), given.get(name)?.clone()));
     let mut starts: Vec<(String, ForeignExpr)> =
         model.states.iter().filter_map(|state| start(&state.name)).collect();
     starts.extend(model.clock.iter().map(|clock| (clock.clone(), ForeignExpr::integer(0, &(0..0)))));
-    Ok(Started { model, starts, by_size, assigned })
-}
-
-/// What changes the meaning of a model and is not read.
-fn refuse(model: Node<'_, '_>) -> Result<(), Problem> {
-    let named = |node: Node<'_, '_>| {
-        node.attribute("id").or(node.attribute("variable")).map_or(String::new(), |id| format!(" '{id}'"))
-    };
-    if let Some(event) = listed(model, "listOfEvents").into_iter().next() {
-        return Err(Problem::new(
-            Code::Foreign,
-            &place(event),
-            format!("the event{} is not read", named(event)),
-            "this",
-        )
-        .help("events change states in jumps: take them out, and look at the time between them"));
-    }
-    for rule in listed(model, "listOfRules") {
-        if is(rule, "algebraicRule") {
-            return Err(Problem::new(
-                Code::Foreign,
-                &place(rule),
-                "algebraic rules are not read",
-                "this rule",
-            )
-            .help("solve it for one of its variables, and write an assignment rule"));
-        }
-    }
-    for reaction in listed(model, "listOfReactions") {
-        if says(reaction, "fast", false) {
-            return Err(Problem::new(
-                Code::Foreign,
-                &place(reaction),
-                format!("the reaction{} is fast: that is not read", named(reaction)),
-                "this",
-            )
-            .help("fast reactions are equations between states: eliminate them"));
-        }
-    }
-    Ok(())
-}
-
-/// Packages of level 3 that change what the core says.
-fn refuse_packages(root: Node<'_, '_>) -> Result<(), Problem> {
-    let needed = root.attributes().find(|attribute| {
-        attribute.name() == "required"
-            && attribute.namespace().is_some()
-            && matches!(attribute.value().trim(), "true" | "1")
-    });
-    match needed {
-        Some(attribute) => {
-            let package = attribute.namespace().unwrap_or_default();
-            let name = package
-                .trim_end_matches(|c: char| c.is_ascii_digit() || matches!(c, '/' | 'v'))
-                .rsplit('/')
-                .next();
-            let message = format!(
-                "the package '{}' changes what the model means, and is not read",
-                name.unwrap_or(package)
-            );
-            Err(Problem::new(Code::Foreign, &place(root), message, "this")
-                .help("export the model as core SBML"))
-        }
-        None => Ok(()),
-    }
+    Ok(Started { model, starts, by_size, assigned, by_states })
 }
 
 /// What a rule says of a variable.
@@ -373,7 +325,8 @@ impl<'b> Reading<'b> {
         self.index.compartments.get(id).map(|at| &self.compartments[*at])
     }
 
-    fn model(self, node: Node<'_, '_>) -> Result<ForeignModel, Problem> {
+    /// The model, and constants that begin by the states.
+    fn model(self, node: Node<'_, '_>) -> Result<(ForeignModel, Vec<(String, ForeignExpr)>), Problem> {
         let title = node.attribute("name").or(node.attribute("id")).map(str::to_owned);
         let mut model = ForeignModel { title, source: source(node), ..ForeignModel::default() };
         for (id, rule) in &self.rules {
@@ -392,7 +345,7 @@ impl<'b> Reading<'b> {
         let order: BTreeMap<&str, usize> =
             self.species.iter().enumerate().map(|(at, one)| (one.id.as_str(), at)).collect();
         model.states.sort_by_key(|state| order.get(state.name.as_str()).copied().unwrap_or(usize::MAX));
-        self.add_constants(&mut model)?;
+        let by_states = self.add_constants(&mut model);
         self.outputs(&mut model);
         let mut uses_time = false;
         let mut look =
@@ -408,11 +361,11 @@ impl<'b> Reading<'b> {
         if !unknown.is_empty() {
             model.remarks.push("all parameters are taken to be unknown, and all initial conditions: --unknown says otherwise of parameters".to_owned());
         }
-        Ok(model)
+        Ok((model, by_states))
     }
 
-    /// What does not change: sizes, constant species, parameters.
-    fn add_constants(&self, model: &mut ForeignModel) -> Result<(), Problem> {
+    /// What does not change: sizes, constant species, parameters. Those that begin by the states are constants without a value.
+    fn add_constants(&self, model: &mut ForeignModel) -> Vec<(String, ForeignExpr)> {
         let moved: BTreeSet<String> = model.states.iter().map(|state| state.name.clone()).collect();
         let defined: BTreeSet<String> = model.definitions.iter().map(|(name, _)| name.clone()).collect();
         let ruled = |id: &str| self.rule(id).is_some() || moved.contains(id) || defined.contains(id);
@@ -452,7 +405,7 @@ impl<'b> Reading<'b> {
         // what begins as a formula of constants is one of them by that formula
         let mut fixed: BTreeSet<String> = constants.iter().map(|constant| constant.name.clone()).collect();
         fixed.extend(self.rules.iter().filter(|(_, rule)| !rule.is_rate).map(|(id, _)| id.clone()));
-        let mut states_begin = false;
+        let (mut states_begin, mut by_states) = (false, Vec::new());
         let mut moving = BTreeMap::new();
         let mut assigned = BTreeSet::new();
         by_size.retain(|(id, _)| !self.index.begun.contains(id));
@@ -461,22 +414,13 @@ impl<'b> Reading<'b> {
                 states_begin = true;
                 continue;
             }
-            let mut bad = None;
-            value.names(&mut |name, span| {
-                if !fixed.contains(name) || self.depends_on_states(name, &moved, &mut moving) {
-                    bad = Some((name.to_owned(), span.clone()));
-                }
+            let mut moves = false;
+            value.names(&mut |name, _| {
+                moves |= !fixed.contains(name) || self.depends_on_states(name, &moved, &mut moving);
             });
-            if let Some((name, span)) = bad {
-                return Err(Problem::new(
-                    Code::Foreign,
-                    &span,
-                    format!("'{id}' begins by the value of '{name}', which moves"),
-                    "this",
-                )
-                .help(format!(
-                    "give '{id}' a value of its own, or make it unknown by taking the assignment out"
-                )));
+            if moves {
+                by_states.push((id.clone(), value.clone()));
+                continue;
             }
             assigned.insert(id.as_str());
             model.definitions.push((id.clone(), value.clone()));
@@ -498,8 +442,10 @@ impl<'b> Reading<'b> {
                 .push(format!("fixed by initial assignments, and not identified: {}", fixed.join(", ")));
         }
         constants.retain(|constant| !assigned.contains(constant.name.as_str()));
+        let begun = |name: &str| by_states.iter().any(|(id, _)| id == name);
+        constants.iter_mut().filter(|one| begun(&one.name)).for_each(|one| one.value = None);
         model.constants = constants;
-        Ok(())
+        by_states
     }
 
     /// Whether the size of a compartment, by its assignment rule, changes with time.
