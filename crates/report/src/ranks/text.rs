@@ -14,14 +14,16 @@ use palmistry_rank::sweep::{BranchAnswer, GlobalAnswer, RankAnswer, SweepReport}
 
 /// The ranks at the sampled states in one line; with the details also what was met on the way.
 fn sampled_text(how: &str, report: &SweepReport, details: bool, out: &mut String) {
-    let at_all = |count: u64| {
-        if count == report.samples { "at all of them".to_owned() } else { format!("at {count}") }
+    let share = |count: u64| match count {
+        1 if report.samples == 1 => String::new(),
+        all if all == report.samples => " at all of them".to_owned(),
+        some => format!(" at {some}"),
     };
     let ranks: Vec<String> = report
         .rank_histogram
         .iter()
         .rev()
-        .map(|(rank, count)| format!("rank {rank} {}", at_all(*count)))
+        .map(|(rank, count)| format!("rank {rank}{}", share(*count)))
         .collect();
     let mut text = match ranks.is_empty() {
         true => "no sampled state could be decided".to_owned(),
