@@ -191,11 +191,14 @@ fn in_places(text: &str, pattern: &str) -> Option<Vec<f64>> {
         return in_place(text, pattern).map(|value| vec![value]);
     }
     let parts = pattern.split(' ').map(|word| match word {
-        "..." => ".*?".to_owned(),
-        "#" => "[^ ]+".to_owned(),
-        word => escaped(word).replace(r"\{\}", r"([-+]?[0-9]+(?:,[0-9]{3})*(?:\.[0-9]+)?(?:e[-+]?[0-9]+)?)"),
+        "..." => "(?:[^ ]+ )*?".to_owned(),
+        "#" => "[^ ]+ ".to_owned(),
+        word => {
+            let number = r"([-+]?[0-9]+(?:,[0-9]{3})*(?:\.[0-9]+)?(?:e[-+]?[0-9]+)?)";
+            format!("{} ", escaped(word).replace(r"\{\}", number))
+        }
     });
-    let pattern = format!("(?:^| ){}(?:$|[^0-9.])", parts.collect::<Vec<_>>().join(" "));
+    let pattern = format!("(?:^| ){}(?:$|[^0-9.])", parts.collect::<String>().trim_end());
     let found = regex_lite::Regex::new(&pattern).ok()?.captures(text)?;
     found.iter().skip(1).map(|number| Some(Number::at(number?.as_str())?.0.value)).collect()
 }
@@ -491,6 +494,7 @@ fn words_between_may_be_any() {
         ("rough: ... (3.47) on {} margin", Some(vec![0.0])),
         ("rough: ... 0.15 # # {},", Some(vec![0.035])),
         ("rough: ... 0.05 {}", None),
+        ("smooth: ... 4 ... bodies; ... on {} margin", Some(vec![2.0])),
         ("mooth: ... 0.15 {}", None),
         ("smooth: ... bodies, {}", None),
     ] {
