@@ -1,5 +1,6 @@
 //! Ranks at states where the argument of an absolute value vanishes. The oracle takes one-sided differences of the outputs' derivatives, which are written here by hand.
 
+use crate::common::{folder, palmistry, write};
 use palmistry::claim::Verdict;
 use palmistry::{System, decide_all};
 
@@ -123,4 +124,18 @@ fn what_is_not_differentiable_at_a_kink_decides_nothing() {
     ] {
         assert_eq!(word(model, claim).0, "undecided", "{model}");
     }
+}
+
+/// States are not sampled in a kink, and the message says what answers. Beside it they are.
+#[test]
+fn a_sweep_in_a_kink_says_what_decides_there() {
+    let folder = folder();
+    let file =
+        write(&folder, "s.proof", format!("{}\nsample beta in [-1, 1] r in [-1, 1]\n", CASES[0].model));
+    let rank = |condition: &str| palmistry(&["rank", file.to_str().unwrap(), "--where", condition]);
+    let output = rank("beta = 0");
+    assert_eq!(output.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(message.contains("lie in a kink of an absolute value"), "{message}");
+    assert_eq!(rank("r = 0").status.code(), Some(0));
 }

@@ -206,9 +206,9 @@ impl CompiledPhase {
         for (time, moves) in &kinks {
             let [before, behind] = [time - beside(*time), time + beside(*time)];
             if before > from {
-                let count = times[found.len()..].iter().filter(|own| **own <= *time).count();
+                // what is measured at that very time is measured behind it: an input has been switched by then
+                let count = times[found.len()..].iter().filter(|own| **own < before).count();
                 let mut own: Vec<f64> = times[found.len()..found.len() + count].to_vec();
-                own.iter_mut().for_each(|time| *time = time.min(before));
                 own.push(before);
                 let (mut there, _) = self.smoothly(at, (from, &start), &own, None, how)?;
                 let Some(end) = there.pop() else { break };

@@ -246,6 +246,27 @@ fn a_jump_moves_with_its_time() {
     }
 }
 
+/// An input that is measured itself, at the very time at which it is switched: it has been switched.
+#[test]
+fn an_input_has_been_switched_when_it_is_measured() {
+    let made = Made {
+        text: "system \"input\"\nstate x, t\nparam k, T unknown\ndrift f\n  x' = -k*x*(3 + sign(t - T))\n  t' = 1\nlet u = 3 + 2*sign(t - T)\noutput x\n",
+        parameters: &[("k", 1e-3, 1e3, LOG10), ("T", 0.5, 20.0, LINEAR)],
+        experiments: &[(&[], &[Some("1"), Some("0")])],
+        rows: &[
+            (0, "u", 1.0, 1.0, "1"),
+            (0, "u", 2.0, 1.0, "1"),
+            (0, "u", 5.0, 1.0, "1"),
+            (0, "x", 2.0, 1.0, "1"),
+        ],
+        clock: Some(1),
+    };
+    let found = made.likelihood().at(&[-1.0, 2.0], Exactness::Answer, &NEVER).unwrap();
+    for (own, known) in found.expected.iter().zip([1.0, 5.0, 5.0, (-0.4f64).exp()]) {
+        near(*own, known, 1e-8);
+    }
+}
+
 /// Densities of what is measured have the integral one, on each scale and by each law; and their derivatives are those of differences.
 #[test]
 fn densities_are_densities() {

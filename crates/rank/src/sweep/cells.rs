@@ -1,7 +1,9 @@
 //! The branches of a question, divided by the signs on which roots of squares depend.
 
 use super::asked::{RankQuestion, held_conditions};
+use super::question::RankError;
 use crate::observability::{Branch, Edges, Locus, SignCell, sign_cells};
+use dashu::rational::RBig;
 use palmistry_lang::System;
 use palmistry_math::expression::{Guard, NodeId, add_guard};
 
@@ -14,12 +16,15 @@ pub(super) struct BranchPart {
 }
 
 /// The parts of the branches by signs.
+///
+/// # Errors
+/// Where all of them lie in kinks.
 pub(super) fn by_signs(
     system: &mut System,
     question: &RankQuestion<'_>,
     branches: Vec<Branch>,
     own: &[NodeId],
-) -> Vec<BranchPart> {
+) -> Result<Vec<BranchPart>, RankError> {
     let mut nodes: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
     for field in system.moving_fields() {
         nodes.extend(system.fields[field].components.iter().map(|(_, node)| *node));
@@ -27,6 +32,7 @@ pub(super) fn by_signs(
     nodes.extend(own);
     let smooth = system.smooth_guards(&system.moving_fields());
     let mut found = Vec::new();
+    let mut is_in_kinks = false;
     for branch in branches {
         // outputs are differentiated by the states before these have the values that the conditions give
         let mut held = held_conditions(system, question, &branch);
@@ -44,6 +50,9 @@ pub(super) fn by_signs(
             // with what the conditions give it may be empty
             let given = system.substitute_guards(&cell.guards, &branch.values);
             if given.iter().any(|guard| guard.is_obvious(&system.graph) == Some(false)) {
+                let is_zero =
+                    |guard: &Guard| system.graph.constant_value(guard.node).is_some_and(RBig::is_zero);
+                is_in_kinks |= given.iter().any(is_zero);
                 continue;
             }
             let mut part = branch.clone();
@@ -64,5 +73,8 @@ pub(super) fn by_signs(
             found.push(BranchPart { branch: part, cell, without_states });
         }
     }
-    found
+    if found.is_empty() && is_in_kinks {
+        return Err(RankError::InAKink);
+    }
+    Ok(found)
 }

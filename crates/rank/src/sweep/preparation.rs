@@ -126,7 +126,8 @@ impl<'q> RankPreparation<'q> {
         let own_guards = system.definition_guards(OWN_ROWS);
         let (mut prepared, mut left_out) = (Vec::new(), Vec::new());
         let mut fingerprint = Fingerprint::default();
-        for part in by_signs(system, question, branches, own.as_deref().unwrap_or_default()) {
+        let parts = by_signs(system, question, branches, own.as_deref().unwrap_or_default())?;
+        for part in parts {
             let samples = if part.without_states.is_some() { 0 } else { question.samples };
             left_out.extend(part.without_states);
             let work = |system: &mut System| {

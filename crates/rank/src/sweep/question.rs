@@ -165,6 +165,11 @@ pub enum RankError {
     /// No field moves the states, or every state is a pole.
     #[error(transparent)]
     Codistribution(#[from] CodistributionError),
+    /// On all of the set the argument of an absolute value vanishes.
+    #[error(
+        "all of these states lie in a kink of an absolute value, where the rules of derivatives give no Lie derivatives; a claim 'rank = n where ...' is decided by those that are continuously differentiable there"
+    )]
+    InAKink,
     /// No state can be drawn.
     #[error(transparent)]
     Locus(#[from] LocusError),
