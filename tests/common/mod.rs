@@ -21,6 +21,11 @@ pub fn with_threads(arguments: &[&str], threads: Option<&str>) -> Output {
     command.output().expect("the program runs")
 }
 
+/// The words that it printed, with one blank between them: where a line is broken says nothing.
+pub fn words_of(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// What it printed, as JSON.
 pub fn json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| {

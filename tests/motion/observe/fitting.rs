@@ -2,7 +2,7 @@
 //!
 //! Oracle: under the stated noise a probability is even, whatever was fitted; wrong models by closed forms; regression with an unknown that is fixed.
 
-use crate::common::{folder, json, palmistry, write};
+use crate::common::{folder, json, palmistry, words_of, write};
 use crate::observe::{NEVER, answers, experiment};
 use palmistry::experiment::Experiment;
 use palmistry::observer::{Signals, Track, UpdateEnd};
@@ -173,7 +173,7 @@ fn windows_that_pass_alone_do_not_agree_where_they_meet() {
     let output = palmistry(&["observe", path.to_str().unwrap(), "--json"]);
     assert_eq!(output.status.code(), Some(1));
     assert_eq!(json(&output)["observers"][0]["together"]["fits"], false);
-    let words = String::from_utf8(palmistry(&["observe", path.to_str().unwrap()]).stdout).unwrap();
+    let words = words_of(&palmistry(&["observe", path.to_str().unwrap()]));
     assert!(
         words.contains("windows together fail the chi-square test") && words.contains("try next ("),
         "{words}"
@@ -190,7 +190,7 @@ fn windows_that_pass_alone_do_not_agree_where_they_meet() {
     );
     let output = json(&palmistry(&["observe", path.to_str().unwrap(), "--json"]));
     assert_eq!(output["observers"][0]["updates"][0]["fit"]["drift"]["output"], "x");
-    let words = String::from_utf8(palmistry(&["observe", path.to_str().unwrap()]).stdout).unwrap();
+    let words = words_of(&palmistry(&["observe", path.to_str().unwrap()]));
     assert!(words.contains("and they drift, those of x most"), "{words}");
 }
 

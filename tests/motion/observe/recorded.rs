@@ -87,7 +87,7 @@ fn times_in_milliseconds_end_and_are_named() {
     let told = |key: &str| apart[key].as_f64().unwrap_or_else(|| panic!("{key}: {}", found["shape"]));
     assert!((told("between") - 3.5).abs() < 1e-9 && (0.1..1.0).contains(&told("scale")), "{apart}");
     let words = palmistry(&["observe", scene.to_str().unwrap(), "--data", data.to_str().unwrap()]);
-    let words = String::from_utf8(words.stdout).unwrap();
+    let words = crate::common::words_of(&words);
     assert!(words.contains("Are the times in another unit than s, as milliseconds?"), "{words}");
 }
 

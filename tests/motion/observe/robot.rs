@@ -97,7 +97,7 @@ fn nothing_closes_where_wheel_2_goes_ahead() {
     let path = folder.path().join("back.toml");
     std::fs::write(&path, with(&back, "samples = 601", "samples = 121")).unwrap();
     let path = path.to_str().unwrap();
-    let told = String::from_utf8(palmistry(&["observe", path]).stdout).unwrap();
+    let told = crate::common::words_of(&palmistry(&["observe", path]));
     assert!(told.contains("wheel 2 is never where wheel 1 has been, and nothing closes"), "{told}");
     let output = palmistry(&["observe", path, "--json"]);
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
