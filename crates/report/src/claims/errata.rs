@@ -196,11 +196,16 @@ fn formula(text: &str, outcome: &Outcome) -> String {
 /// What is longer is shown as it is written alone.
 const LONGEST_FORMULA: usize = 2000;
 
-/// What the abbreviations of a statement mean.
+/// What the abbreviations of a statement mean, but for those that are too long to be written out.
 fn definitions(outcome: &Outcome, out: &mut String) {
-    let lines = explanations(outcome);
+    let is_long = |line: &String| line.contains("= (an expression of ");
+    let (long, lines): (Vec<String>, Vec<String>) = explanations(outcome).into_iter().partition(is_long);
     if !lines.is_empty() {
         let _ = writeln!(out, "where\n\n{}", code_block(&lines.join("\n")));
+    }
+    if !long.is_empty() {
+        let names: Vec<&str> = long.iter().filter_map(|line| line.split(" = ").next()).collect();
+        let _ = writeln!(out, "For {} see the proof file.\n", code_span(&names.join(", ")));
     }
 }
 
