@@ -1,7 +1,7 @@
 //! How many values give the same outputs: by hand, by what was published (`values` and functions in
 //! `tests/models/expected.toml`), and the words in which it is told.
 
-use crate::common::{json, palmistry};
+use crate::common::{json, palmistry, words_of};
 use palmistry::observability::{Observability, Solutions, SolutionsOf, SolutionsQuestion, solutions};
 use palmistry::sweep::SolutionsWanted;
 use palmistry::{System, answer_solutions};
@@ -244,8 +244,10 @@ fn the_command_tells_each_unknown() {
     std::fs::write(&file, "system \"s\" state x param k, a, b unknown drift f x' = k^2*x + a*b output x")
         .unwrap();
     let file = file.to_str().unwrap();
-    let text = String::from_utf8(palmistry(&["rank", file, "--global"]).stdout).unwrap();
-    assert!(text.contains("2 solutions over the complex numbers: proved, by k -> -k"), "{text}");
+    let output = palmistry(&["rank", file, "--global"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    let words = words_of(&output);
+    assert!(words.contains("2 solutions over the complex numbers: proved, by k -> -k"), "{text}");
     assert!(text.contains("globally observable   1 solution: proved"), "{text}");
     let found = json(&palmistry(&["rank", file, "--global", "--json"]));
     let values: Vec<_> =
