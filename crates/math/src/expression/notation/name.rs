@@ -72,7 +72,7 @@ fn index_within(letters: &str) -> Option<usize> {
         }
     }
     let (first, index) = letters.split_at(letters.chars().next()?.len_utf8());
-    if begins_with_greek(index).is_some() && !NO_GREEK_INDEX.contains(&letters) {
+    if first != "d" && begins_with_greek(index).is_some() && !NO_GREEK_INDEX.contains(&letters) {
         return Some(first.len());
     }
     let is_large = first.chars().all(|c| c.is_ascii_uppercase());
@@ -89,7 +89,7 @@ fn index_within(letters: &str) -> Option<usize> {
     is_one.then_some(first.len())
 }
 
-/// Words that end in the name of a Greek letter, most of them such names with a large letter.
+/// Words that end in the name of a Greek letter, most of them such names with a large letter. `d` before one is a difference.
 const NO_GREEK_INDEX: [&str; 10] =
     ["Beta", "Zeta", "Eta", "beta", "zeta", "theta", "meta", "biota", "Iota", "Epsilon"];
 
