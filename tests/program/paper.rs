@@ -244,7 +244,7 @@ fn a_set_without_a_rank_is_not_as_expected() {
     let out = folder.path().join("out");
     let verify = |more: &[&str]| {
         let paths = [file.to_str().unwrap(), "--no-times", "--out", out.to_str().unwrap()];
-        palmistry(&[&["verify"], &paths[..], more].concat())
+        palmistry(&[&["verify"][..], &paths[..], more].concat())
     };
     let output = verify(&["--json"]);
     assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
