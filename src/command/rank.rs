@@ -34,8 +34,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Decides the rank of the observability codistribution at sampled states.
 ///
 /// It first gives what holds generically, except on a set of measure zero: each state observable or not, each parameter identifiable or not, and
-/// the rank, by power series at random points modulo random primes; then identifiable combinations and unobservable directions, and the singular set, where
-/// the rank drops, as far as a small amount of work decides it. Then at sampled states: Lie derivatives along the drift and the inputs are added in increasing order until the rank
+/// the rank, by power series at random points modulo random primes; then identifiable combinations and unobservable directions, and the singular set, as
+/// far as a small amount of work decides it. Then at sampled states: Lie derivatives along the drift and the inputs are added in increasing order until the rank
 /// stops growing or reaches the dimension. At every state the rank is computed by singular values and certified by exact
 /// arithmetic at that very state. Where the file
 /// defines a matrix named 'rows', its rank is decided at the same states too. Parameters without a range have the values of

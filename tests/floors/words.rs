@@ -183,12 +183,15 @@ fn help(source: &str) -> Vec<(usize, String)> {
 
 /// The lines of a page: prose, and blocks that somebody wrote. What commands print is held by what they print, and comments are not shown.
 fn page(source: &str) -> Vec<(usize, String)> {
-    let (mut found, mut fence) = (Vec::new(), None::<bool>);
+    let (mut found, mut fence, mut comment) = (Vec::new(), None::<bool>, false);
     for (number, line) in source.lines().enumerate() {
-        if let Some(kind) = line.strip_prefix("```") {
+        comment |= fence.is_none() && line.starts_with("<!--");
+        if comment {
+            comment = !line.contains("-->");
+        } else if let Some(kind) = line.strip_prefix("```") {
             let is_output = kind.starts_with("console") || kind.starts_with("json");
             fence = fence.is_none().then_some(is_output);
-        } else if fence != Some(true) && !line.starts_with("<!--") {
+        } else if fence != Some(true) {
             found.push((number + 1, line.to_owned()));
         }
     }
@@ -351,8 +354,8 @@ fn texts_are_found() {
     let source = "/// Not shown.\nfn one() {}\n/// Shown\n/// twice.\n#[arg(long)]\nfield: bool,\n/// A value.\nCertified,\n";
     assert_eq!(help(source), [(3, " Shown twice.".to_owned()), (7, " A value.".to_owned())]);
 
-    let source = "prose\n```console\n$ output\n```\n```palmistry\nsystem \"s\"\n```\n<!-- held -->\nend\n";
-    assert_eq!(page(source).into_iter().map(|(line, _)| line).collect::<Vec<_>>(), [1, 6, 9]);
+    let source = "prose\n```console\n$ output\n```\n```palmistry\nsystem \"s\"\n```\n<!-- held\nx -->\nend\n";
+    assert_eq!(page(source).into_iter().map(|(line, _)| line).collect::<Vec<_>>(), [1, 6, 10]);
 
     let source = "a = 1 # 'no'\n#: public\nb = f\"x {seen} y\" + 'it\\'s'\n\"\"\"Two\nlines.\"\"\"\n";
     let texts: Vec<(usize, String)> = python(source);

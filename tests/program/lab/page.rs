@@ -313,7 +313,9 @@ fn keys_alone_and_names_for_who_listens() {
         }
     }
     browser.key("Enter", 13, 0);
-    browser.until("document.querySelector('[data-asked=\"Singular set\"] pre').textContent.includes('generic rank')");
+    browser.until(
+        "document.querySelector('[data-asked=\"Singular set\"] pre').textContent.includes('generic rank')",
+    );
     open(&mut browser, "martinelli2005/two_beacons.proof");
     for tab in ["answers", "map", "motion", "observe", "models"] {
         browser.click(&format!("#tab-{tab}"));

@@ -90,7 +90,9 @@ pub fn identifiable_functions(
 ) -> IdentifiableFunctions {
     let open = |why: String| IdentifiableFunctions { open: Some(why), ..IdentifiableFunctions::default() };
     let undecided = counted.unknowns.iter().find_map(|of_it| match &of_it.solutions {
-        Solutions::Undecided(why) => Some(format!("the number of solutions of {} is undecided: {why}", of_it.name)),
+        Solutions::Undecided(why) => {
+            Some(format!("the number of solutions of {} is undecided: {why}", of_it.name))
+        }
         _ => None,
     });
     let (None, Some(points)) = (&undecided, counted.points) else {
