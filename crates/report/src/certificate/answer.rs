@@ -116,7 +116,7 @@ pub fn region_text(answer: &RegionAnswer) -> String {
         let guards: Vec<String> = answer.nowhere.iter().map(|guard| shortened(guard)).collect();
         let _ = writeln!(
             out,
-            "nothing is proved: the system or its rows exist nowhere, since {} would have to hold",
+            "nothing is proved: the system or its rows are defined nowhere, since {} would have to hold",
             guards.join(" and ")
         );
         return out.trim_end().to_owned();

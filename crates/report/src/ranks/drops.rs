@@ -133,12 +133,12 @@ pub fn drops_text(answer: &DropAnswer) -> String {
             let _ = writeln!(out, "these sets may not be all: {why}");
         }
         (Some(why), _) => {
-            let _ = writeln!(out, "where the rank drops was not found: {why}");
+            let _ = writeln!(out, "the singular set was not found: {why}");
         }
         (None, true) if answer.sets.is_empty() => {
             let _ = writeln!(
                 out,
-                "it drops nowhere: proved, by minors as products of factors that do not vanish"
+                "the singular set is empty: proved, by minors as products of factors that do not vanish"
             );
         }
         (None, true) => {

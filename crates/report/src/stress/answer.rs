@@ -294,7 +294,7 @@ pub fn stress_text(studies: &[StressStudy]) -> String {
          digits (d), says that it cannot decide (?), refuses and names why (!), as a range over the states from which\n\
          lines go (at how many of them, where not at all); '-' none of it down to 9e-16.\n\
          Ranks are those of the rows: the file's own, or the Lie derivatives that suffice at generic states. On a set\n\
-         that the motion leaves, Lie derivatives of higher order may raise the rank: 'rank --where-it-drops' says so.\n\
+         that the motion leaves, Lie derivatives of higher order may raise the rank: 'rank --singular-set' says so.\n\
          On the set: at how many of the states on the set itself the verdict is the exact rank of the rows there.\n\
          'always full' looks at nothing. numpy's rule: all rows, of length one and not equilibrated; what exceeds\n\
          max(rows, columns) * 2^-52 of the largest singular value counts.\n\
