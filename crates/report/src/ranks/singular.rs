@@ -70,7 +70,7 @@ pub(super) fn singular_set_text(found: &SingularSet, file: &str, out: &mut Strin
             return prose(&format!("singular set: not decided at once; {command} says what is open"), out);
         }
         (true, false) => {
-            "singular set, at any values of the parameters; the rank is full elsewhere (proved):"
+            "singular set, at any values of the parameters; elsewhere the rank is the generic one (proved):"
         }
         (false, false) => "singular set, at any values of the parameters, and there may be more of it:",
     };
