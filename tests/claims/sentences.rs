@@ -60,7 +60,7 @@ fn friction_moves_the_mass_least_at_a_wide_angle() {
         }
         greatest
     };
-    let angles = [0.05, 0.5, 1.0, 1.4];
+    let angles: [f64; 4] = [0.05, 0.5, 1.0, 1.4];
     for steep in angles {
         let claimed = mu / ((1.0 + mu * mu) * steep.cos());
         assert!((greatest(steep) - claimed).abs() < 1e-12, "{steep}");
