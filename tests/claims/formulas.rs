@@ -52,7 +52,11 @@ fn every_statement_of_every_file_is_set() {
                     balanced(&statement_latex(text).unwrap());
                     statements += 1;
                 }
-                for (name, text) in system.explanations(&claim.body).definitions {
+                let definitions = system.explanations(&claim.body).definitions;
+                // those that are too long to be written down are named with their size
+                for (name, text) in
+                    definitions.into_iter().filter(|(_, text)| !text.starts_with("(an expression of"))
+                {
                     well_formed(
                         &definition_mathml(&name, &text, &system.looks)
                             .unwrap_or_else(|| panic!("{name} = {text}")),

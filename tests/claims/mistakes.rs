@@ -6,7 +6,7 @@ use std::path::Path;
 const RIGHT: &str = "system \"s\"\nstate phi, omega\nparam k = 2\nangle phi\ndrift f\n  phi' = omega\n  omega' = -k*sin(phi)\noutput phi\n";
 
 /// A text of the right file, what stands in its place, and words of the advice.
-const MISTAKES: [(&str, &str, &str); 120] = [
+const MISTAKES: [(&str, &str, &str); 119] = [
     ("-k*sin", "-k sin", "a product is written with '*', as in k*sin"),
     ("-k*sin", "-2 sin", "a product is written with '*', as in 2*sin"),
     ("-k*sin", "-2k*sin", "a product is written with '*'"),
@@ -59,7 +59,6 @@ const MISTAKES: [(&str, &str, &str); 120] = [
     ("-k*sin(phi)", "-k*phi^1/2", "a root is written sqrt(x), or with a bracket, as in x^(1/2)"),
     ("-k*sin(phi)", "-k*sin(phi) + rand()", "nothing is random in a file"),
     ("k = 2", "k = 2 unknown : stiffness", "a unit stands before the word, as in param k = 2 : m/s unknown"),
-    ("output phi", "output phi\ny(t) = phi", "without (t): a rate is written y' = ..."),
     ("output phi", "output phi\nsample omega in [-1 to 1]", "the ends of a range have ',' between them"),
     ("\"s\"", "\u{201c}s\u{201d}", "straight quotation marks"),
     ("output phi", "output phi\nclaim a: L(f, phi) == omega", "an equation has one '='"),

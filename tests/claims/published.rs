@@ -5,7 +5,7 @@ use dashu::rational::RBig;
 use palmistry::expression::{Expected, Input, NodeId, Program, parse_expression};
 use palmistry::number::{Floats, parse_decimal};
 use palmistry::observability::NamedCoordinate;
-use palmistry::system::{ClaimBody, Value};
+use palmistry::system::{ClaimBody, Kind, Value};
 use palmistry::{Outcome, System, Verdict, Witness, decide_all};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -180,6 +180,12 @@ fn every_shown_statement_is_read_back_and_has_its_values() {
         for (place, outcome) in outcomes.iter().enumerate() {
             let kind = &system.claims[place].body;
             if matches!(kind, ClaimBody::Definition { .. } | ClaimBody::Open { .. }) {
+                continue;
+            }
+            // signals of an imported file cannot be declared anew; that file's own claims are among those compared
+            if system.symbols().any(|(symbol, info)| {
+                info.kind == Kind::Imported && system.symbol_name(symbol).contains('\'')
+            }) {
                 continue;
             }
             let mut text = shown_alone(&system, outcome);

@@ -286,5 +286,5 @@ fn a_paper_may_have_experiments() {
         assert!((value / truth).log10().abs() < 3.0 * deviation, "{one}");
     }
     let page = std::fs::read_to_string(out.join("index.html")).unwrap();
-    assert!(page.contains("Experiments fitted together") && page.contains("seen, large"));
+    assert!(page.contains("Experiments fitted together") && page.contains("measured, large"));
 }

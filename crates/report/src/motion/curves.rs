@@ -136,6 +136,7 @@ pub(super) fn draw(frame: &Frame<'_>, curves: &[Curve]) -> String {
         }
         let mut chart = ChartBuilder::on(&plot)
             .margin(16)
+            .margin_right(30)
             .x_label_area_size(70)
             .y_label_area_size(120)
             .build_cartesian_2d(frame.times.0..frame.times.1, low..high)?;

@@ -128,6 +128,7 @@ pub(super) fn band_picture(found: &Reconstruction, shape: &ShapeEstimate, truth:
         top.draw(&Text::new("band of the support radius", (20, 10), words))?;
         let mut chart = ChartBuilder::on(&plot)
             .margin(16)
+            .margin_right(30)
             .x_label_area_size(70)
             .y_label_area_size(120)
             .build_cartesian_2d(0.0..360.0, -high..high)?;

@@ -53,6 +53,7 @@ pub(super) fn noise(observed: &Observed<'_>, place: usize) -> String {
         head.draw(&Text::new("bound of Cramér and Rao", (150, 36), anchored))?;
         let mut chart = ChartBuilder::on(&plot)
             .margin(8)
+            .margin_right(24)
             .x_label_area_size(36)
             .y_label_area_size(64)
             .build_cartesian_2d((left..right).log_scale(), (low..high).log_scale())?;
@@ -112,6 +113,7 @@ pub(super) fn basin(observed: &Observed<'_>, basin: &Basin) -> String {
         head.draw(&Text::new("truth", (294, 36), anchored))?;
         let mut chart = ChartBuilder::on(&plot)
             .margin(8)
+            .margin_right(24)
             .x_label_area_size(36)
             .y_label_area_size(54)
             .build_cartesian_2d(x.0..x.1, y.0..y.1)?;
@@ -178,6 +180,7 @@ pub(super) fn curvature(map: &CurvatureMap) -> String {
         }
         let mut chart = ChartBuilder::on(&plot)
             .margin(8)
+            .margin_right(24)
             .x_label_area_size(36)
             .y_label_area_size(54)
             .build_cartesian_2d(ends.clone(), ends.clone())?;

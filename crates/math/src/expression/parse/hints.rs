@@ -222,11 +222,6 @@ fn of_numbers(line: &str, rest: &str) -> Option<String> {
         {
             "an exponent is written with 'e', as in 2e-3"
         }
-        Some('e' | 'E') if begins_with_digit(&word[1..]) => {
-            let end = word[1..].find(|c| !digit(c)).map(|end| 1 + end)?;
-            let number = &line[line.len() - number(line)..];
-            return Some(format!("{PRODUCT}, as in {number}{}*{}", &word[..end], &word[end..]));
-        }
         Some('i' | 'j') if word.len() == 1 => "there are no complex numbers",
         None if rest.starts_with('%') => {
             "a percentage is written as a fraction, as in 0.5 for 50%; a comment begins with '#'"
@@ -321,18 +316,23 @@ fn of_a_rate(before: &str, rest: &str) -> Option<String> {
     let (name, line) = (&named[begin..], named[..begin].rsplit(ends_a_line).next().unwrap_or_default());
     let digits = name.len() - name.trim_start_matches(|c: char| c.is_ascii_digit()).len();
     if digits > 0 && digits < name.len() {
-        // `2x`
-        return Some(product(&name[..digits], &name[digits..]));
+        // `2x`, and `1e3x`
+        let exponent = name[digits..].strip_prefix(['e', 'E']).unwrap_or_default();
+        let count = exponent.len() - exponent.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        let end = if count > 0 { digits + 1 + count } else { digits };
+        return Some(product(&name[..end], &name[end..]));
     }
-    let left = line.trim_end();
-    if rest.starts_with("/dt") && left.trim_start() == "d" {
-        return prime(name);
+    if let Some((state, _)) =
+        rest.split_once("/dt").filter(|(state, _)| name == "d" && state.chars().all(is_word))
+    {
+        return prime(state);
     }
     if let Some(left) =
         line.trim_end().rsplit(|c: char| !is_word(c)).next().filter(|_| !line.trim().is_empty())
     {
         // behind an expression stands no state whose rate follows
-        return by_words(line, name).or_else(|| Some(product(left, name)));
+        let other = || power_of_a_function(line, name).unwrap_or_else(|| product(left, name));
+        return by_words(line, name).or_else(|| Some(other()));
     }
     let inner = rest.strip_prefix('(').and_then(|rest| rest.split(')').next());
     if rest.starts_with("^+") || inner.is_some_and(|inner| inner.ends_with("+1") || inner.ends_with("+ 1")) {
@@ -346,11 +346,6 @@ fn of_a_rate(before: &str, rest: &str) -> Option<String> {
     {
         return Some(format!(
             "a second derivative needs a state of its own, as in {state}' = v and v' = ..."
-        ));
-    }
-    if rest.strip_prefix("(t)").is_some_and(|rest| rest.trim_start_matches(' ').starts_with('=')) {
-        return Some(format!(
-            "without (t): a rate is written {name}' = ..., a measured quantity is declared as in output x"
         ));
     }
     if name == "end" {
@@ -373,6 +368,16 @@ fn of_a_rate(before: &str, rest: &str) -> Option<String> {
     };
     let state = dotted.or(derived).map(str::trim).filter(|state| !state.is_empty());
     prime(state.or(rest.starts_with('=').then_some(name))?)
+}
+
+/// Behind `sin^2` stands the argument of the function.
+fn power_of_a_function(before: &str, argument: &str) -> Option<String> {
+    let (base, power) = before.trim_end().rsplit_once('^')?;
+    let function = base.rsplit(|c| !is_word(c)).next().filter(|name| is_function(name))?;
+    let is_power = !power.is_empty() && power.chars().all(|c| c.is_ascii_digit());
+    is_power.then(|| {
+        format!("a power of a function stands behind its brackets, as in {function}({argument})^{power}")
+    })
 }
 
 /// A product of two names, or of something else.
@@ -408,13 +413,8 @@ fn of_a_product(before: &str, rest: &str, what: &str) -> Option<String> {
                 "arguments have ',' between them, as in ({left}, {right}); {PRODUCT}, as in {left}*{right}"
             );
         }
-        if left.starts_with(|c: char| c.is_ascii_digit())
-            && let Some(base) = before.trim_end().strip_suffix(left).and_then(|base| base.strip_suffix('^'))
-            && let Some(function) = base.rsplit(|c| !is_word(c)).next().filter(|name| is_function(name))
-        {
-            return format!(
-                "a power of a function stands behind its brackets, as in {function}({right})^{left}"
-            );
+        if let Some(help) = power_of_a_function(before, &right) {
+            return help;
         }
         let left = if left.starts_with(|c: char| c.is_ascii_digit()) { "" } else { left };
         product(left, &right)
