@@ -159,7 +159,6 @@ pub(super) fn suspect_json(names: &[&str], suspect: &Suspect) -> Value {
 #[cfg(test)]
 mod tests {
     use super::{explained, p_in_words};
-    use crate::layout::counted;
     use palmistry_observe::{Fit, NoiseFrom};
 
     #[test]
