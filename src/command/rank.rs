@@ -34,8 +34,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Decides the rank of the observability codistribution at sampled states.
 ///
 /// It first gives what holds generically, except on a set of measure zero: each state observable or not, each parameter identifiable or not, and
-/// the rank, by power series at random points modulo random primes; then identifiable combinations and unobservable directions, and the singular set, as
-/// far as a small amount of work decides it. Then at sampled states: Lie derivatives along the drift and the inputs are added in increasing order until the rank
+/// the rank, by power series at random points modulo random primes; then identifiable combinations and unobservable directions. Where states are sampled it looks for the singular set, as
+/// far as a small amount of work decides it. Then at these states: Lie derivatives along the drift and the inputs are added in increasing order until the rank
 /// stops growing or reaches the dimension. At every state the rank is computed by singular values and certified by exact
 /// arithmetic at that very state. Where the file
 /// defines a matrix named 'rows', its rank is decided at the same states too. Parameters without a range have the values of
@@ -311,8 +311,7 @@ impl Rank {
             || files.into_iter().any(Option::is_some)
     }
 
-    /// Numbers of solutions, then what is identifiable of unknowns with infinitely many and the directions along which they change, then the singular
-    /// set. Where these cannot be decided, the numbers alone.
+    /// Numbers of solutions, then what is identifiable of unknowns with infinitely many and the directions along which they change. Where these cannot be decided, the numbers alone.
     fn with_directions(&self, system: &mut System, values: &GlobalAnswer) -> Printed {
         let mut printed = Printed::of_values(values);
         if interrupted() || values.interrupted {
@@ -320,9 +319,8 @@ impl Rank {
         }
         let question =
             RankQuestion { samples: 0, seed: self.seed, interrupt: &INTERRUPTED, ..Default::default() };
-        let mut anew = system.clone();
         let Ok(answer) = answer_rank(system, &question) else { return printed };
-        let singular_set = self.singular_set_at_once(&mut anew);
+        let singular_set = Some(SingularSet::NotSearched);
         printed.object["unobservable_directions"] = unobservable_directions_json(&answer);
         printed.object["singular_set"] = singular_set_json(singular_set.as_ref());
         let parts = RankTextParts {
@@ -432,7 +430,12 @@ impl Rank {
             files.text_or(path, written.as_ref().map(|found| found.text.clone()).map_err(String::clone));
             written
         });
-        let singular_set = self.singular_set_at_once(&mut anew);
+        // a second of work is much beside a generic rank alone, and little beside states
+        let is_sampled = answer.branches.iter().any(|branch| branch.full.samples > 0);
+        let singular_set = match is_sampled {
+            true => self.singular_set_at_once(&mut anew),
+            false => Some(SingularSet::NotSearched),
+        };
         let mut object = rank_json(&answer);
         object["singular_set"] = singular_set_json(singular_set.as_ref());
         if let Some(Ok(found)) = &written {

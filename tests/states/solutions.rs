@@ -304,6 +304,9 @@ fn numbers_are_followed_by_directions_and_the_singular_set() {
         let found = json(&palmistry(&["rank", file, how, "--json"]));
         assert_eq!(found["unobservable_directions"]["functions"][0]["text"], "a*b", "{found}");
         assert_eq!(found["unobservable_directions"]["fields_missing"], 0, "{found}");
+        // without sampled states it is named, and looked for beside them
+        assert!(found["singular_set"]["sets"].is_null(), "{found}");
+        let found = json(&palmistry(&["rank", file, how, "--samples", "10", "--json"]));
         let sets: Vec<&str> = found["singular_set"]["sets"]
             .as_array()
             .unwrap()

@@ -14,6 +14,8 @@ pub enum SingularSet {
     Found(Box<DropAnswer>),
     /// The budget does not suffice.
     TooMuchWork,
+    /// It was not looked for: what is quick without it stays so.
+    NotSearched,
     /// It is not asked of this system; in words, why.
     NotAsked(String),
 }
@@ -54,6 +56,7 @@ pub(super) fn singular_set_text(found: &SingularSet, file: &str, out: &mut Strin
         SingularSet::TooMuchWork => {
             return prose(&format!("singular set: not found at once; {command} searches on"), out);
         }
+        SingularSet::NotSearched => return prose(&format!("singular set: {command} finds it"), out),
         SingularSet::NotAsked(why) => return prose(&format!("singular set: not decided: {why}"), out),
     };
     let is_exact = answer.is_exact();
@@ -91,6 +94,7 @@ pub fn singular_set_json(found: Option<&SingularSet>) -> Value {
     let (answer, why) = match found {
         SingularSet::Found(answer) => (Some(answer), answer.out_of_reach.clone()),
         SingularSet::TooMuchWork => (None, Some("more work than is done at once".to_owned())),
+        SingularSet::NotSearched => (None, Some("not looked for without sampled states".to_owned())),
         SingularSet::NotAsked(why) => (None, Some(why.clone())),
     };
     json!({
