@@ -131,8 +131,8 @@ pub fn where_it_drops_telling(
     Ok(answer)
 }
 
-/// What [`singular_set_at_once`] may take: about a second.
-const OF_A_MOMENT: Allowance = Allowance { bytes: 1 << 28, nodes: 1 << 20, steps: 1 << 26 };
+/// What [`singular_set_at_once`] may take: some tenths of a second.
+const OF_A_MOMENT: Allowance = Allowance { bytes: 1 << 28, nodes: 1 << 20, steps: 1 << 24 };
 
 /// The same with a small budget, and without interval certificates: `None` where the search takes more. The work is counted and not timed, so that the
 /// answer is the same on every machine.
