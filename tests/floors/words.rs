@@ -85,7 +85,7 @@ fn old_words(text: &str) -> Option<(&'static str, &'static str)> {
         text.match_indices(phrase).any(|(at, _)| {
             let before = text[..at].chars().next_back().is_some_and(is_part);
             let behind = text[at + phrase.len()..].chars().next().is_some_and(is_part);
-            !before && !(behind && phrase.ends_with(is_part))
+            !(before || behind && phrase.ends_with(is_part))
         })
     };
     OLD.iter().copied().find(|(phrase, _)| stands(phrase))

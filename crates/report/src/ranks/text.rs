@@ -35,7 +35,7 @@ fn sampled_text(how: &str, report: &SweepReport, details: bool, out: &mut String
         0 => "; computed, not certified".to_owned(),
         some => format!("; certified at {some} of {}", report.samples),
     };
-    let poles: u64 = report.poles.iter().map(|(_, count)| count).sum();
+    let poles: u64 = report.poles.values().sum();
     if poles > 0 && !details {
         text += &format!("; {} left out, singular there", counted(poles, "state"));
     }
