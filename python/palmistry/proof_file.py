@@ -122,7 +122,7 @@ class System:
         for entry in found:
             kind, rest = (*entry.split(None, 1), "", "")[:2]
             if kind == "use":
-                name, other = re.fullmatch(r'(\w+) = "(.*)"\s*', rest).groups()
+                name, other = re.fullmatch(r'(\w+)\s*=\s*"(.*)"\s*', rest).groups()
                 other = os.path.join(os.path.dirname(path), other) if depth < 8 else refuse("deep imports")
                 self.known[name] = System(other, depth + 1)
                 self.names["param"] += self.known[name].names["state"] + self.known[name].names["param"]

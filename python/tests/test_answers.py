@@ -74,6 +74,8 @@ class TheProgram(unittest.TestCase):
                 self.assertEqual(raised.exception.message, expected["error"]["message"])
                 continue
             found = palmistry.System.read(file).rank(times=False, **asked)
+            # the command looks for the singular set as well: here it is a method of its own
+            expected.pop("singular_set")
             self.assertEqual(found.json, expected, name)
 
     def test_certificates(self):

@@ -56,6 +56,11 @@ def pendulum_system():
     return palmistry.System.from_function(f, lambda x: x.phi, states="phi, omega", parameters="k, c", unknown="k, c", angles="phi", sample=sample)
 
 
+def without_directions(found):
+    """What the command adds to an answer: in the package these are methods of their own."""
+    return {name: value for name, value in found.items() if name not in ("singular_set", "unobservable_directions")}
+
+
 @built
 class TheProgram(unittest.TestCase):
     """The same objects as the program's."""
@@ -65,7 +70,7 @@ class TheProgram(unittest.TestCase):
             file = os.path.join(ROOT, name)
             system = palmistry.System.read(file)
             if "siwr" not in name:
-                self.assertEqual(timeless(system.global_().json), timeless(program("rank", file, "--global")), name)
+                self.assertEqual(timeless(system.global_().json), timeless(without_directions(program("rank", file, "--global"))), name)
                 self.assertEqual(timeless(system.singular_set().json), timeless(program("rank", file, "--singular-set")), name)
             self.assertEqual(timeless(system.accessible(50).json), timeless(program("rank", file, "--accessible", "--samples", "50")), name)
 
@@ -461,7 +466,7 @@ class Sweeps(unittest.TestCase):
                 system = palmistry.System.read(file)
                 found = palmistry.sweep(system, samples=3e3, client=client, at={"mu": "1.5"}, progress=False)
             alone = system.rank(samples=3000, at={"mu": "1.5"}, times=False)
-            self.assertEqual(timeless(found.json), timeless(alone.json))
+            self.assertEqual(timeless(without_directions(found.json)), timeless(alone.json))
             self.assertEqual(found.histogram, alone.histogram)
             self.assertIn("rank", found.text)
             with open(file, "a", encoding="utf-8") as copy:
