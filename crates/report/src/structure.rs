@@ -301,7 +301,7 @@ mod tests {
     #[test]
     fn names_are_symbols() {
         let picture = drawn(
-            "system \"s\" state Fyf, biomass_concentration drift f Fyf' = biomass_concentration output Fyf",
+            "system \"s\" state Fyf, biomass_concentration drift f Fyf' = biomass_concentration biomass_concentration' = 0 output Fyf",
         )
         .unwrap();
         assert!(picture.contains(">F<tspan dy=") && picture.contains(">yf</tspan>"), "{picture}");
