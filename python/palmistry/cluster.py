@@ -133,5 +133,7 @@ def sweep(system, samples, *, client, shards=None, folder=None, seed=1, at=None,
     shards = shards or max(8 * sum(client.nthreads().values()), 8)
     program = path()
     found = sweep_command(command, shards, folder, client, program, threads=threads, progress=progress)
+    # the command looks for it as well: here it is a method of its own, System.singular_set
+    found.pop("singular_set", None)
     text, _ = run(program, [*command, "--merge", folder])
     return Rank(_Merged(found, text.rstrip("\n")))
