@@ -332,11 +332,15 @@ impl Rank {
         Printed { text: rank_text_with(&answer, &parts), ..printed }
     }
 
-    /// Where the rank drops, as far as that is decided at once; `None` where the question is about other states than all, or the work was interrupted.
-    fn singular_set_at_once(&self, system: &mut System) -> Option<SingularSet> {
+    /// The singular set, as far as it is decided at once, beside sampled states: some tenths of a second are little there, and much beside a generic rank alone. `None` where
+    /// the question is about other states than all, or the work was interrupted.
+    fn singular_set_beside(&self, system: &mut System, is_sampled: bool) -> Option<SingularSet> {
         let is_of_all = self.at.is_empty() && self.conditions.is_empty() && self.order.is_none();
         if !is_of_all || interrupted() {
             return None;
+        }
+        if !is_sampled {
+            return Some(SingularSet::NotSearched);
         }
         let found = singular_set_at_once(system, self.seed, &INTERRUPTED);
         (!interrupted()).then(|| match found {
@@ -430,12 +434,8 @@ impl Rank {
             files.text_or(path, written.as_ref().map(|found| found.text.clone()).map_err(String::clone));
             written
         });
-        // a second of work is much beside a generic rank alone, and little beside states
         let is_sampled = answer.branches.iter().any(|branch| branch.full.samples > 0);
-        let singular_set = match is_sampled {
-            true => self.singular_set_at_once(&mut anew),
-            false => Some(SingularSet::NotSearched),
-        };
+        let singular_set = self.singular_set_beside(&mut anew, is_sampled);
         let mut object = rank_json(&answer);
         object["singular_set"] = singular_set_json(singular_set.as_ref());
         if let Some(Ok(found)) = &written {

@@ -423,3 +423,24 @@ fn packages_of_sbml_are_refused_where_they_are_used() {
     assert!(why.message.contains("the package 'comp' changes what the model means"), "{}", why.message);
     assert_eq!(why.line_and_column().0, 2);
 }
+
+/// Starts that are made of other starts, each of it twice: what would come of it is counted before it is made.
+#[test]
+fn starts_of_petab_that_double_are_refused() {
+    let plain = Problem::default();
+    let name = |i: usize| format!("A{i}");
+    let more: String = (0..40).map(|i| species(&name(i), "initialConcentration=\"1\"", false)).collect();
+    let one = |id: &str, inside: &str| {
+        format!("<initialAssignment symbol=\"{id}\">{}</initialAssignment>", math(inside))
+    };
+    let sum = |i: usize| format!("<apply><plus/><ci>{0}</ci><ci>{0}</ci></apply>", name(i + 1));
+    let starts: String = (0..39).map(|i| one(&name(i), &sum(i))).collect();
+    let dose = one("dose", "<ci>A0</ci>");
+    let assigned =
+        format!("</listOfParameters><listOfInitialAssignments>{starts}{dose}</listOfInitialAssignments>");
+    let model = plain.model.replace("</listOfSpecies>", &format!("{more}</listOfSpecies>"));
+    let model =
+        model.replace("</listOfParameters>", &assigned).replace("<ci>k</ci>", "<ci>k</ci><ci>dose</ci>");
+    let why = Problem { model, ..Problem::default() }.read().err().expect("2^39 names");
+    assert!(why.contains("becomes too large"), "{why}");
+}

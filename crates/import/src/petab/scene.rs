@@ -1,9 +1,10 @@
 //! The scene of a problem, and its measurements.
 
 use super::{Measurement, Reading, is_number};
-use crate::expression::ForeignExpr;
+use crate::expression::{DEEPEST, ForeignExpr};
 use crate::names::ForeignNames;
 use palmistry_lang::{Code, Problem};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 /// A text between quotation marks, as TOML reads it.
@@ -63,46 +64,67 @@ impl Reading<'_> {
         let set = self.conditions.get(condition).map_or(&[][..], Vec::as_slice);
         let mut pairs: Vec<(String, String)> =
             set.iter().map(|(name, own)| (names.ours(name).to_owned(), value(own, names))).collect();
-        for (id, formula) in &self.by_states {
-            if set.iter().all(|(name, _)| name != id) {
-                let formula = self.at_start(formula, first)?;
-                pairs.push((names.ours(id).to_owned(), quoted(&self.text(&formula, names)?)));
-            }
+        let starts = if self.by_states.is_empty() { BTreeMap::new() } else { self.starts_in(first) };
+        let is_set: BTreeSet<&str> = set.iter().map(|(name, _)| name.as_str()).collect();
+        for (id, formula) in self.by_states.iter().filter(|(id, _)| !is_set.contains(id.as_str())) {
+            let formula = self.at_start(formula, &starts)?;
+            pairs.push((names.ours(id).to_owned(), quoted(&self.text(&formula, names)?)));
         }
         Ok(inline(&pairs))
     }
 
-    /// A formula with what the states are at the start in a condition.
-    fn at_start(&self, formula: &ForeignExpr, condition: &str) -> Result<ForeignExpr, Problem> {
-        let set = self.conditions.get(condition).map_or(&[][..], Vec::as_slice);
-        let is_state = |name: &str| self.model.states.iter().any(|state| state.name == name);
-        let start = |name: &str| {
-            let own = set.iter().find(|(other, _)| other == name).map(|(_, own)| own.as_str());
-            let own = own.map(|own| match is_number(own) {
-                true => ForeignExpr::number(own, &(0..0)).unwrap_or_else(|_| ForeignExpr::name(own, &(0..0))),
-                false => ForeignExpr::name(own, &(0..0)),
-            });
-            own.or_else(|| {
-                self.starts.iter().find(|(state, _)| state == name).map(|(_, start)| start.clone())
-            })
-        };
+    /// What each state is at the start in a condition; none of a state of which nothing says it.
+    fn starts_in(&self, condition: &str) -> BTreeMap<&str, Option<ForeignExpr>> {
+        let mut found: BTreeMap<&str, Option<ForeignExpr>> =
+            self.model.states.iter().map(|state| (state.name.as_str(), None)).collect();
+        for (name, start) in &self.starts {
+            found.entry(name.as_str()).and_modify(|own| *own = Some(start.clone()));
+        }
+        for (name, own) in self.conditions.get(condition).map_or(&[][..], Vec::as_slice) {
+            let number = ForeignExpr::number(own, &(0..0)).ok().filter(|_| is_number(own));
+            let value = number.unwrap_or_else(|| ForeignExpr::name(own, &(0..0)));
+            found.entry(name.as_str()).and_modify(|start| *start = Some(value));
+        }
+        found
+    }
+
+    /// A formula with what the states are at the start put in. What comes of it is counted before it is made: starts may be formulas of other starts, and double.
+    fn at_start(
+        &self,
+        formula: &ForeignExpr,
+        starts: &BTreeMap<&str, Option<ForeignExpr>>,
+    ) -> Result<ForeignExpr, Problem> {
         let mut whole = formula.clone();
-        // a start may be a formula of other starts
-        for _ in 0..=self.model.states.len() {
-            let mut left = None;
-            whole.names(&mut |name, _| {
-                if is_state(name) {
-                    left = Some(name.to_owned());
+        for _ in 0..=starts.len() {
+            let (mut size, mut deepest, mut is_met, mut unknown) = (whole.size(), 0, false, None);
+            whole.names(&mut |name, _| match starts.get(name) {
+                Some(Some(start)) => {
+                    is_met = true;
+                    size = size.saturating_add(start.size());
+                    deepest = deepest.max(start.depth());
                 }
+                Some(None) => unknown = Some(name.to_owned()),
+                None => {}
             });
-            let Some(name) = left else { return Ok(whole) };
-            if start(&name).is_none() {
+            if let Some(name) = unknown {
                 let message = format!("nothing says what '{name}' is at the start");
                 return Err(Problem::new(Code::Foreign, &formula.span, message, "this formula needs it")
                     .help("give it an initial value"));
             }
-            whole.replace(&|name| if is_state(name) { start(name) } else { None });
-            self.budget.nodes(whole.size()).map_err(|spent| crate::too_much(&formula.span, spent))?;
+            if !is_met {
+                return Ok(whole);
+            }
+            self.budget.nodes(size).map_err(|spent| crate::too_much(&formula.span, spent))?;
+            if whole.depth() + deepest > DEEPEST {
+                return Err(Problem::new(
+                    Code::Foreign,
+                    &formula.span,
+                    "initial values that are nested too deeply",
+                    "this",
+                )
+                .help("give some of them values of their own"));
+            }
+            whole.replace(&|name| starts.get(name).cloned().flatten());
         }
         Err(Problem::new(Code::Foreign, &formula.span, "initial values that go round in a circle", "this")
             .help("give one of them a value of its own"))

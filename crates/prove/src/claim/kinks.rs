@@ -9,8 +9,19 @@ use super::terms::{OnBranch, Terms};
 use super::verdict::Verdict;
 use palmistry_checker::Evidence;
 use palmistry_lang::System;
+use palmistry_math::expression::{Node, NodeId};
 use palmistry_rank::observability::{Branch, rows_at_kinks};
 use rand_chacha::ChaCha8Rng;
+
+/// Whether functions exist everywhere, since they divide by nothing and have no roots or logarithms.
+fn are_polynomials(system: &System, functions: &[NodeId]) -> bool {
+    let reachable = system.graph.reachable(functions.iter().copied());
+    reachable.into_iter().all(|id| match system.graph.node(id) {
+        Node::Apply(..) | Node::Div(..) => false,
+        Node::Power(_, exponent) => exponent >= 0,
+        _ => true,
+    })
+}
 
 impl Asked<'_> {
     /// The verdict on a branch on which not all Lie derivatives have a differential, part by part: that a rank is so high, up to the full one, follows from those
@@ -24,8 +35,10 @@ impl Asked<'_> {
         let full = system.unknown_count();
         let claimed = match self.question {
             Question::Codistribution { claimed } => *claimed,
-            // where the rank is full all functions are observable
-            Question::Visible { is_observable: true, .. } => ClaimedRanks::exactly(full),
+            // where the rank is full all functions are observable that exist there
+            Question::Visible { functions, is_observable: true } if are_polynomials(system, functions) => {
+                ClaimedRanks::exactly(full)
+            }
             _ => return Ok(None),
         };
         let guards = self.all_guards(system, branch);

@@ -10,9 +10,14 @@ use super::conditions::{Branch, vanishes};
 use super::signs::{Edges, SignCell, in_sign_cell, sign_cells};
 use palmistry_lang::{System, Time};
 use palmistry_math::expression::{Guard, Need, Node, NodeId, gradient};
+use palmistry_math::number::Function;
 
 /// Of no more derivatives than these differentials are taken, an unknown.
 const MOST_ROWS_EACH: usize = 4;
+/// No further derivative is taken once those of one side are as large as this.
+const MOST_NODES: usize = 50_000;
+/// No more sides are compared: three kinks that meet have eight.
+const MOST_SIDES: usize = 8;
 
 /// The differentials at the states of a branch that lies in a kink, on a part of it on which all other signs are known.
 #[derive(Clone, Debug)]
@@ -62,16 +67,18 @@ pub fn rows_at_kinks(
     {
         return Ok(None);
     }
-    let Some(kept) = without_kinks(system, branch, guards)? else { return Ok(None) };
     let mut nodes: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
     for field in system.moving_fields() {
         nodes.extend(system.fields[field].components.iter().map(|(_, node)| *node));
     }
+    let Some(kept) = without_kinks(system, branch, guards, &nodes)? else { return Ok(None) };
     // they are differentiated by the states before these have the values that the conditions give
     let mut held = branch.values.clone();
     held.retain(|symbol, _| !system.states.contains(symbol));
     let there = system.graph.substitute(&nodes, &held);
-    let open = system.substitute_guards(&kept, &held);
+    // what holds with equality on the set says nothing of the states around it: both sides are looked at
+    let strict: Vec<Guard> = kept.iter().filter(|guard| guard.need != Need::NotNegative).copied().collect();
+    let open = system.substitute_guards(&strict, &held);
     let mut groups: Vec<(Vec<Guard>, Vec<SignCell>)> = Vec::new();
     for cell in sign_cells(system, &there, &open, Edges::Counted)? {
         let operands: Vec<NodeId> = cell.guards.iter().map(|guard| guard.node).collect();
@@ -93,7 +100,7 @@ pub fn rows_at_kinks(
     }
     let mut found = Vec::new();
     for (beside, cells) in groups {
-        let Some(mut rows) = rows_of_sides(system, cells)? else { return Ok(None) };
+        let Some(mut rows) = rows_of_sides(system, branch, cells)? else { return Ok(None) };
         rows.branch = branch.clone();
         for guard in beside {
             // the sign is not zero but on a part of fewer dimensions
@@ -113,7 +120,17 @@ fn without_kinks(
     system: &mut System,
     branch: &Branch,
     guards: &[Guard],
+    nodes: &[NodeId],
 ) -> Result<Option<Vec<Guard>>, String> {
+    let arguments = |system: &System, of: Function| -> Vec<NodeId> {
+        let reachable = system.graph.reachable(nodes.iter().copied()).into_iter();
+        let argument = |id| match system.graph.node(id) {
+            Node::Apply(function, argument) if function == of => Some(argument),
+            _ => None,
+        };
+        reachable.filter_map(argument).collect()
+    };
+    let (roots, logarithms) = (arguments(system, Function::Sqrt), arguments(system, Function::Log));
     let operands: Vec<NodeId> = guards.iter().map(|guard| guard.node).collect();
     let operands = branch.put_in(system, &operands)?;
     let (mut kept, mut kinks) = (Vec::new(), 0);
@@ -127,7 +144,8 @@ fn without_kinks(
             Node::Mul(one, other) => one == other,
             _ => false,
         };
-        if guard.need != Need::Positive || !is_square {
+        let is_root = roots.contains(&guard.node) && !logarithms.contains(&guard.node);
+        if guard.need != Need::Positive || !is_square || !is_root || branch.assumed.contains(guard) {
             return Ok(None);
         }
         kinks += 1;
@@ -135,14 +153,26 @@ fn without_kinks(
     Ok((kinks > 0).then_some(kept))
 }
 
-/// The rows of several sides that meet in the kink: none where a field jumps between them.
-fn rows_of_sides(system: &mut System, cells: Vec<SignCell>) -> Result<Option<KinkRows>, String> {
+/// The rows of several sides that meet in the kink: none where a field jumps between them, and where not all sides are there.
+fn rows_of_sides(
+    system: &mut System,
+    branch: &Branch,
+    cells: Vec<SignCell>,
+) -> Result<Option<KinkRows>, String> {
+    // one side alone would agree with itself
+    if !(2..=MOST_SIDES).contains(&cells.len()) {
+        return Ok(None);
+    }
     let mut sides = Vec::new();
     for cell in cells {
         let (fields, derivatives) = in_sign_cell(system, &cell, derivatives);
         sides.push(Side { cell, fields, derivatives });
     }
+    if has_kinks_left(system, branch, &sides)? {
+        return Ok(None);
+    }
     let Some(first) = sides.first() else { return Ok(None) };
+    let shared = sides.iter().map(|side| side.derivatives.len()).min().unwrap_or(0);
     let mut faces = Vec::new();
     for (place, one) in sides.iter().enumerate() {
         for (further, other) in sides[place + 1..].iter().enumerate() {
@@ -167,7 +197,7 @@ fn rows_of_sides(system: &mut System, cells: Vec<SignCell>) -> Result<Option<Kin
     }
     let mut is_smooth: Vec<bool> = Vec::new();
     let mut missing = None;
-    for place in 0..first.derivatives.len() {
+    for place in 0..shared {
         if let Some(parent) = first.derivatives[place].parent
             && !is_smooth[parent]
         {
@@ -191,12 +221,31 @@ fn rows_of_sides(system: &mut System, cells: Vec<SignCell>) -> Result<Option<Kin
     Ok(Some(KinkRows { branch: Branch::default(), entries, guards: Vec::new(), missing }))
 }
 
+/// Whether a root is left in what some side is, whose argument vanishes on the branch: such terms are alike on both sides, and have no differential.
+fn has_kinks_left(system: &mut System, branch: &Branch, sides: &[Side]) -> Result<bool, String> {
+    let nodes = sides.iter().flat_map(|side| {
+        let derivatives = side.derivatives.iter();
+        side.fields
+            .iter()
+            .copied()
+            .chain(derivatives.flat_map(|own| own.gradient.iter().copied().chain([own.value])))
+    });
+    let argument = |id| match system.graph.node(id) {
+        Node::Apply(Function::Sqrt, argument) => Some(argument),
+        _ => None,
+    };
+    let arguments: Vec<NodeId> = system.graph.reachable(nodes).into_iter().filter_map(argument).collect();
+    let there = branch.put_in(system, &arguments)?;
+    Ok(there.into_iter().any(|argument| vanishes(system, argument)))
+}
+
 /// All components of the moving fields, and the outputs with their Lie derivatives, order by order.
 fn derivatives(system: &mut System) -> (Vec<NodeId>, Vec<Sided>) {
     let moving = system.moving_fields();
     let components = moving.iter().flat_map(|field| system.fields[*field].components.iter());
     let fields = components.map(|(_, node)| *node).collect();
     let (states, most) = (system.states.clone(), MOST_ROWS_EACH * system.unknown_count());
+    let begin = system.graph.len();
     let mut found: Vec<Sided> = Vec::new();
     for (name, node) in system.outputs.clone() {
         let gradient = gradient(&mut system.graph, node, &states);
@@ -204,7 +253,7 @@ fn derivatives(system: &mut System) -> (Vec<NodeId>, Vec<Sided>) {
         found.push(Sided { parent: None, text, value: node, gradient });
     }
     let mut parent = 0;
-    while parent < found.len() && found.len() < most {
+    while parent < found.len() && found.len() < most && system.graph.len() - begin < MOST_NODES {
         for field in &moving {
             let value = system.lie_derivative(*field, found[parent].value);
             let gradient = gradient(&mut system.graph, value, &states);

@@ -56,7 +56,7 @@ pub(super) fn singular_set_text(found: &SingularSet, file: &str, out: &mut Strin
         SingularSet::TooMuchWork => {
             return prose(&format!("singular set: not found at once; {command} searches on"), out);
         }
-        SingularSet::NotSearched => return prose(&format!("singular set: {command} finds it"), out),
+        SingularSet::NotSearched => return prose(&format!("singular set: {command} looks for it"), out),
         SingularSet::NotAsked(why) => return prose(&format!("singular set: not decided: {why}"), out),
     };
     let is_exact = answer.is_exact();
