@@ -101,8 +101,8 @@ fn a_wrong_sign_is_refuted() {
     let all = counts.iter().sum::<usize>();
     assert!(all > 1000, "only {all} mutants");
     let reason = "Each surviving sign stands before something that is zero (a field that does not move the state, a \
-                  product that vanishes), is squared, scales what is free (an unobservable direction, a rank), is in a \
-                  number that is not the least of some, or leaves an inequality that still holds.";
+                  product that vanishes), is squared, scales what is free (an unobservable direction, a rank), or is in a \
+                  number that is not the least of some.";
     insta::with_settings!({ description => reason }, {
         insta::assert_json_snapshot!(
             "survivors",
