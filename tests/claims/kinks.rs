@@ -142,8 +142,11 @@ fn a_sweep_in_a_kink_says_what_decides_there() {
     assert_eq!(rank("r = 0").status.code(), Some(0));
 }
 
-/// Terms of drawn systems, as text and as numbers.
-const TERMS: [(&str, fn(f64, f64) -> f64); 9] = [
+/// A term as text and as numbers.
+type Term = (&'static str, fn(f64, f64) -> f64);
+
+/// Terms of drawn systems.
+const TERMS: [Term; 9] = [
     ("x", |x, _| x),
     ("y", |_, y| y),
     ("x*abs(x)", |x, _| x * x.abs()),

@@ -441,6 +441,6 @@ fn starts_of_petab_that_double_are_refused() {
     let model = plain.model.replace("</listOfSpecies>", &format!("{more}</listOfSpecies>"));
     let model =
         model.replace("</listOfParameters>", &assigned).replace("<ci>k</ci>", "<ci>k</ci><ci>dose</ci>");
-    let why = Problem { model, ..Problem::default() }.read().err().expect("2^39 names");
+    let why = Problem { model, ..Problem::default() }.read().expect_err("2^39 names");
     assert!(why.contains("becomes too large"), "{why}");
 }

@@ -60,9 +60,9 @@ pub(super) fn singular_set_text(found: &SingularSet, file: &str, out: &mut Strin
         SingularSet::NotAsked(why) => return prose(&format!("singular set: not decided: {why}"), out),
     };
     let is_exact = answer.is_exact();
+    let domain = if answer.domain.is_empty() { "" } else { " at which all Lie derivatives exist" };
     let what = match (is_exact, answer.sets.is_empty()) {
         (true, true) => {
-            let domain = if answer.domain.is_empty() { "" } else { " at which all Lie derivatives exist" };
             let rank = answer.rank;
             return prose(
                 &format!("singular set: empty; the rank is {rank} at every state{domain} (proved)"),
@@ -72,12 +72,15 @@ pub(super) fn singular_set_text(found: &SingularSet, file: &str, out: &mut Strin
         (false, true) => {
             return prose(&format!("singular set: not decided at once; {command} says what is open"), out);
         }
-        (true, false) => {
-            "singular set, at any values of the parameters; elsewhere the rank is the generic one (proved):"
+        (true, false) => format!(
+            "singular set, at any values of the parameters; the rank is {} at all other states{domain} (proved):",
+            answer.rank
+        ),
+        (false, false) => {
+            "singular set, at any values of the parameters, and there may be more of it:".to_owned()
         }
-        (false, false) => "singular set, at any values of the parameters, and there may be more of it:",
     };
-    prose(what, out);
+    prose(&what, out);
     for set in answer.sets.iter().take(MOST_SETS) {
         item(&set_line(set), out);
     }
