@@ -261,6 +261,9 @@ fn a_set_without_a_rank_is_not_as_expected() {
     let text = String::from_utf8(verify(&[]).stdout).unwrap();
     let line = text.lines().find(|line| line.trim_start().starts_with("straight driving")).unwrap();
     assert!(line.contains(why) && line.ends_with("not as expected"), "{line}");
+    // no claim fails, and the summary does not say that all is well
+    assert!(text.contains("0 claims; 0 not as expected, and 1 result besides the claims\n"), "{text}");
+    assert!(page.contains("1 result</b> besides the claims is not as expected"), "the page's summary");
 }
 
 /// The words of the new entries are names all the same.

@@ -395,7 +395,14 @@ pub fn findings_text(found: &Findings) -> String {
     let failed = found.outcomes().filter(|outcome| !outcome.ok).count();
     let (claims, counts) = (counted(found.outcomes().count(), "claim"), counts_text(found.outcomes()));
     let colon = if counts.is_empty() { "" } else { ": " };
-    let _ = writeln!(out, "{claims}{colon}{counts}; {failed} not as expected");
+    let _ = write!(out, "{claims}{colon}{counts}; {failed} not as expected");
+    // a paper whose claims all are may end with status 1
+    match found.others_not_as_expected() {
+        0 => out.push('\n'),
+        others => {
+            let _ = writeln!(out, ", and {} besides the claims", counted(others, "result"));
+        }
+    }
     if numbering.count() > 0 {
         let equations = numbering.equations(found.outcomes());
         let without = equations.iter().filter(|equation| equation.entries.is_empty()).count();

@@ -9,6 +9,7 @@ use super::source::sources;
 use crate::axis::unit_of;
 use crate::document::document;
 use crate::joint::{JointObserved, joint_section};
+use crate::layout::counted;
 use crate::motion::answers::Observed;
 use crate::motion::section::observed_section;
 use crate::slow_observed::SlowObserved;
@@ -118,6 +119,10 @@ fn header(found: &Findings, links: Markup) -> Markup {
             }
             p { "Checked by palmistry from first principles: what holds, and what does not." }
             (tally(&outcomes))
+            @match found.others_not_as_expected() {
+                0 => {}
+                others => p { b.bad { (counted(others, "result")) " besides the claims" } @if others == 1 { " is" } @else { " are" } " not as expected, marked below." }
+            }
             @if !outcomes.is_empty() {
             @if outcomes.iter().all(|outcome| outcome.ok && outcome.fault.is_none()) { p { "No errata." } }
             details {
