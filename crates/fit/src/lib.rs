@@ -16,6 +16,7 @@ mod problem;
 mod profile;
 mod search;
 mod simulate;
+mod steady;
 mod trust;
 
 pub use information::{Information, WeakDirection};

@@ -1,15 +1,16 @@
 //! The likelihood of parameters, with its gradient and the information that is expected of the measurements.
 
 use super::compiled::{CompiledPhase, Names, Room, Sloped};
-use super::problem::JointProblem;
-use super::simulate::{At, Exactness, Moment, NotFollowed};
+use super::problem::{JointProblem, Phase};
+use super::simulate::{At, Exactness, How, Moment, NotFollowed};
 use nalgebra::{DMatrix, DVector};
 use palmistry_math::expression::NodeId;
 use std::collections::HashMap;
 
 /// An experiment as programs.
 struct CompiledExperiment {
-    before: Option<CompiledPhase>,
+    /// The place of the phase before it.
+    before: Option<usize>,
     phase: CompiledPhase,
     /// The times of measurement, increasing; without the measurements at steady state.
     times: Vec<f64>,
@@ -49,6 +50,8 @@ pub struct SimulatedExperiments {
 /// A problem as programs: ready to be simulated.
 pub struct Likelihood {
     problem: JointProblem,
+    /// The phases before experiments, each once: a control is often that of many experiments.
+    befores: Vec<CompiledPhase>,
     experiments: Vec<CompiledExperiment>,
     formulas: Vec<Sloped>,
     measurements: Vec<CompiledMeasurement>,
@@ -63,19 +66,28 @@ impl Likelihood {
         let mut system = problem.system.clone();
         let names = Names::of(&problem);
         let mut experiments = Vec::new();
+        let mut befores = Vec::new();
+        let mut known: HashMap<&Phase, usize> = HashMap::new();
         let mut all_times = vec![Vec::new(); problem.experiments.len()];
         problem.measurements.iter().for_each(|one| all_times[one.experiment].push(one.time));
         for (at, one) in problem.experiments.iter().enumerate() {
-            let before = one
-                .before
-                .as_ref()
-                .map(|phase| CompiledPhase::new(&mut system, phase, &names, problem.clock));
+            let before = match &one.before {
+                None => None,
+                Some(phase) => Some(match known.get(phase) {
+                    Some(place) => *place,
+                    None => {
+                        befores.push(CompiledPhase::new(&mut system, phase, &names, problem.clock)?);
+                        known.insert(phase, befores.len() - 1);
+                        befores.len() - 1
+                    }
+                }),
+            };
             let mut times = std::mem::take(&mut all_times[at]);
             times.sort_by(f64::total_cmp);
             times.dedup();
             let rests = times.pop_if(|last| last.is_infinite()).is_some();
             experiments.push(CompiledExperiment {
-                before: before.transpose()?,
+                before,
                 phase: CompiledPhase::new(&mut system, &one.phase, &names, problem.clock)?,
                 times,
                 rests,
@@ -98,7 +110,7 @@ impl Likelihood {
             let moment = one.time.is_finite().then(|| times.partition_point(|time| *time < one.time));
             measurements.push(CompiledMeasurement { formula, moment });
         }
-        Ok(Likelihood { problem, experiments, formulas, measurements })
+        Ok(Likelihood { problem, befores, experiments, formulas, measurements })
     }
 
     /// The problem.
@@ -116,24 +128,67 @@ impl Likelihood {
         exactness: Exactness,
         interrupted: &dyn Fn() -> bool,
     ) -> Result<SimulatedExperiments, NotFollowed> {
+        self.simulated(scaled, &How { exactness, slopes: true, interrupted })
+    }
+
+    /// The objective alone, without sensitivities: less work by about as many times as there are parameters. Steps are chosen for the states alone, so
+    /// that its last digits are others than those of [`Likelihood::at`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn objective(
+        &self,
+        scaled: &[f64],
+        exactness: Exactness,
+        interrupted: &dyn Fn() -> bool,
+    ) -> Result<f64, NotFollowed> {
+        Ok(self.simulated(scaled, &How { exactness, slopes: false, interrupted })?.objective)
+    }
+
+    fn simulated(&self, scaled: &[f64], how: &How<'_>) -> Result<SimulatedExperiments, NotFollowed> {
         let values = self.problem.values(scaled);
         let slopes: Vec<f64> =
             self.problem.parameters.iter().zip(scaled).map(|(one, place)| one.scale.slope(*place)).collect();
         let at = At { values: &values, slopes: &slopes };
-        let moments = self
-            .experiments
-            .iter()
-            .zip(&self.problem.experiments)
-            .map(|(one, own)| {
-                one.moments(&at, self.problem.clock, (exactness, interrupted)).map_err(|(time, why)| {
-                    match interrupted() {
-                        true => NotFollowed::Interrupted,
-                        false => NotFollowed::Lost { experiment: own.name.clone(), time, why },
-                    }
-                })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
+        let mut rests: Vec<Option<Moment>> = vec![None; self.befores.len()];
+        let mut moments = Vec::with_capacity(self.experiments.len());
+        for (one, own) in self.experiments.iter().zip(&self.problem.experiments) {
+            let found =
+                self.moments(one, &at, how, &mut rests).map_err(|(time, why)| match (how.interrupted)() {
+                    true => NotFollowed::Interrupted,
+                    false => NotFollowed::Lost { experiment: own.name.clone(), time, why },
+                })?;
+            moments.push(found);
+        }
         self.compared(scaled, &at, &moments)
+    }
+
+    /// An experiment from what came before it; the steady states that are known already, by the places of their phases.
+    fn moments(
+        &self,
+        one: &CompiledExperiment,
+        at: &At<'_>,
+        how: &How<'_>,
+        rests: &mut [Option<Moment>],
+    ) -> Result<(Vec<Moment>, Option<Moment>), (f64, String)> {
+        let before = match one.before {
+            None => None,
+            Some(place) => {
+                if rests[place].is_none() {
+                    let phase = &self.befores[place];
+                    let rest = phase.rest(at, &phase.start(at, None), how);
+                    rests[place] =
+                        Some(rest.map_err(|(time, why)| (time, format!("before it begins, {why}")))?);
+                }
+                rests[place].as_ref()
+            }
+        };
+        let start = one.phase.start(at, before);
+        if one.rests && one.times.is_empty() {
+            return Ok((Vec::new(), Some(one.phase.rest(at, &start, how)?)));
+        }
+        let rests = one.rests.then_some(self.problem.clock);
+        one.phase.follow(at, &start, &one.times, rests, how)
     }
 
     /// The terms of all measurements and priors.
@@ -208,28 +263,5 @@ impl Likelihood {
             found.information[(place, place)] += bend;
         }
         Ok(found)
-    }
-}
-
-impl CompiledExperiment {
-    fn moments(
-        &self,
-        at: &At<'_>,
-        clock: Option<usize>,
-        how: (Exactness, &dyn Fn() -> bool),
-    ) -> Result<(Vec<Moment>, Option<Moment>), (f64, String)> {
-        let before = match &self.before {
-            None => None,
-            Some(phase) => {
-                let start = phase.start(at, None);
-                let (_, rest) = phase
-                    .follow(at, &start, &[], Some(clock), how)
-                    .map_err(|(time, why)| (time, format!("before it begins, {why}")))?;
-                rest
-            }
-        };
-        let start = self.phase.start(at, before.as_ref());
-        let rests = self.rests.then_some(clock);
-        self.phase.follow(at, &start, &self.times, rests, how)
     }
 }

@@ -31,7 +31,7 @@ impl EstimatedParameter {
 }
 
 /// A time during which one set of rates holds.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Phase {
     /// The rate of each state, by states and estimated parameters.
     pub rates: Vec<NodeId>,

@@ -279,8 +279,7 @@ fn from_draws(
 ) -> SearchEnd {
     let parameters = &likelihood.problem().parameters;
     let mut why = "no draw was made".to_owned();
-    let mut best: Option<(Vec<f64>, SimulatedExperiments)> = None;
-    let mut candidates = 0;
+    let mut candidates: Vec<(Vec<f64>, f64)> = Vec::new();
     for _ in 0..DRAWS {
         let draw = |one: &super::EstimatedParameter| {
             let [low, high] = one.scaled_bounds();
@@ -288,24 +287,26 @@ fn from_draws(
             (from + random.random::<f64>() * (to - from)).clamp(low, high)
         };
         let start: Vec<f64> = parameters.iter().map(draw).collect();
+        match likelihood.objective(&start, Exactness::Search, &|| interrupted()) {
+            Ok(here) => candidates.push((start, here)),
+            Err(NotFollowed::Interrupted) => return ended(start, StartEnd::Interrupted),
+            Err(error) => why = error.to_string(),
+        }
+        if candidates.len() == wanted {
+            break;
+        }
+    }
+    candidates.sort_by(|one, other| one.1.total_cmp(&other.1));
+    for (start, _) in candidates {
         match likelihood.at(&start, Exactness::Search, &|| interrupted()) {
             Ok(here) => {
-                candidates += 1;
-                if best.as_ref().is_none_or(|(_, known)| here.objective < known.objective) {
-                    best = Some((start, here));
-                }
+                return search(likelihood, &start, here, &[], (steps, Exactness::Search), interrupted);
             }
             Err(NotFollowed::Interrupted) => return ended(start, StartEnd::Interrupted),
             Err(error) => why = error.to_string(),
         }
-        if candidates == wanted {
-            break;
-        }
     }
-    match best {
-        Some((start, here)) => search(likelihood, &start, here, &[], (steps, Exactness::Search), interrupted),
-        None => ended(Vec::new(), StartEnd::NoStart(why)),
-    }
+    ended(Vec::new(), StartEnd::NoStart(why))
 }
 
 fn ended(start: Vec<f64>, end: StartEnd) -> SearchEnd {

@@ -111,6 +111,15 @@ pub(super) struct At<'a> {
     pub slopes: &'a [f64],
 }
 
+/// How an experiment is followed.
+#[derive(Clone, Copy)]
+pub(super) struct How<'h> {
+    pub exactness: Exactness,
+    /// Whether the sensitivities are followed too.
+    pub slopes: bool,
+    pub interrupted: &'h dyn Fn() -> bool,
+}
+
 impl CompiledPhase {
     /// The state at the start, from what the phase before has left.
     pub fn start(&self, at: &At<'_>, before: Option<&Moment>) -> Moment {
@@ -192,7 +201,7 @@ impl CompiledPhase {
         start: &Moment,
         times: &[f64],
         rests: Option<Option<usize>>,
-        how: (Exactness, &dyn Fn() -> bool),
+        how: &How<'_>,
     ) -> Result<(Vec<Moment>, Option<Moment>), (f64, String)> {
         let until = if rests.is_some() { LONGEST } else { times.last().copied().unwrap_or(0.0) };
         let kinks = self.kinks(at, until);
@@ -241,7 +250,7 @@ impl CompiledPhase {
         (from, start): (f64, &Moment),
         times: &[f64],
         rests: Option<Option<usize>>,
-        (exactness, interrupted): (Exactness, &dyn Fn() -> bool),
+        &How { exactness, slopes: with_slopes, interrupted }: &How<'_>,
     ) -> Result<(Vec<Moment>, Option<Moment>), (f64, String)> {
         let (n, all) = (start.states.len(), at.values.len());
         // what the phase does not depend on has no sensitivity
@@ -250,6 +259,9 @@ impl CompiledPhase {
             .extend((0..all).filter(|column| start.slopes.column(*column).iter().any(|slope| *slope != 0.0)));
         sought.sort_unstable();
         sought.dedup();
+        if !with_slopes {
+            sought.clear();
+        }
         // a problem without any would be of another kind
         let p = sought.len().max(1);
         let (Some(rates), Some(slopes)) = (self.rates.values.loaded(), self.rates.slopes.loaded()) else {

@@ -1,7 +1,10 @@
 //! Checked against closed forms, published values of a stiff system, differences, and normal equations.
 
+use super::compiled::{CompiledPhase, Names};
 use super::laws::Term;
+use super::simulate::{At, Moment};
 use super::*;
+use nalgebra::DMatrix;
 use palmistry_lang::System;
 use palmistry_math::expression::NodeId;
 use std::path::Path;
@@ -217,6 +220,113 @@ fn rest_is_found_with_its_derivatives() {
     near(found.expected[1], new, 1e-7);
     for (own, other) in found.gradient.iter().zip(differences(&likelihood, &place)) {
         near(*own, other, 1e-5);
+    }
+}
+
+/// Steady states whose derivatives follow from their equations and from what is conserved, or do not: a reaction with two conserved sums, one of them of
+/// a parameter; two volumes, whose conserved sum depends on them; a start that is at rest; an epidemic, in which what is left depends on all that happened. Oracles: the
+/// equations of the steady state, solved by bisection, and their differences.
+#[test]
+fn steady_states_have_their_derivatives() {
+    // a value at which an increasing function is zero
+    fn zero(of: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
+        for _ in 0..200 {
+            let middle = (low + high) / 2.0;
+            if of(middle) < 0.0 { low = middle } else { high = middle }
+        }
+        (low + high) / 2.0
+    }
+    let reaction = |p: &[f64]| {
+        let [k, m, all_a, all_b] = [p[0], p[1], p[2] + 0.25, 2.25];
+        let c = zero(|c| m * c - k * (all_a - c) * (all_b - c), [0.0, all_a.min(all_b)]);
+        vec![all_a - c, all_b - c, c]
+    };
+    let volumes = |p: &[f64]| {
+        let [k, m, v, w] = [p[0], p[1], p[2], 2.0];
+        let y = (v + 3.0 * w) / (v * k / m + w);
+        vec![k * y / m, y]
+    };
+    // where it begins at rest
+    let still = |p: &[f64]| vec![p[1] / (p[0] * p[2])];
+    // log(S/S0) = (S - N)*b/g, and nothing is left of I
+    let epidemic = |p: &[f64]| {
+        let (b, g) = (p[0], p[1]);
+        let all = 1.0 + p[2];
+        vec![zero(|s| s.ln() - (s - all) * b / g, [1e-12, g / b]), 0.0]
+    };
+    type Closed<'c> = &'c dyn Fn(&[f64]) -> Vec<f64>;
+    type Kind<'k> = (&'k str, &'k [Option<&'k str>], &'k [&'k str], [f64; 3], Closed<'k>, bool);
+    let kinds: [Kind<'_>; 4] = [
+        (
+            "x\nparam k, m, p unknown\ndrift f\n  x' = m - k*p*x\noutput x\n",
+            &[Some("3")],
+            &["x"],
+            [0.4, 2.4, 2.0],
+            &still,
+            true,
+        ),
+        (
+            "A, B, C\nparam k, m, p unknown\ndrift f\n  A' = -k*A*B + m*C\n  B' = -k*A*B + m*C\n  C' = k*A*B - m*C\noutput A\n",
+            &[Some("p"), Some("2"), Some("1/4")],
+            &["A", "B", "C"],
+            [3e2, 0.7e2, 1.3],
+            &reaction,
+            true,
+        ),
+        (
+            "x, y\nparam k, m, p unknown\ndrift f\n  x' = (k*y - m*x)/p\n  y' = (m*x - k*y)/2\noutput x\n",
+            &[Some("1"), Some("3")],
+            &["x", "y"],
+            [0.4, 0.9, 5.0],
+            &volumes,
+            false,
+        ),
+        (
+            "S, I\nparam k, m, p unknown\ndrift f\n  S' = -k*S*I\n  I' = k*S*I - m*I\noutput S\n",
+            &[Some("1"), Some("p")],
+            &["S", "I"],
+            [1.5, 0.6, 0.02],
+            &epidemic,
+            false,
+        ),
+    ];
+    for (text, start, outputs, values, closed, is_determined) in kinds {
+        let text = format!("system \"rest\"\nstate {text}");
+        let rows: Vec<Row<'_>> = outputs.iter().map(|output| (0, *output, f64::INFINITY, 0.3, "1")).collect();
+        let made = Made {
+            text: &text,
+            parameters: &["k", "m", "p"].map(|name| (name, 1e-3, 1e3, LOG10)),
+            experiments: &[(&[], start)],
+            rows: &rows,
+            clock: None,
+        };
+        let likelihood = made.likelihood();
+        let place = values.map(f64::log10);
+        let found = likelihood.at(&place, Exactness::Answer, &NEVER).unwrap();
+        let of_place = |place: &[f64]| closed(&place.iter().map(|one| 10f64.powf(*one)).collect::<Vec<_>>());
+        let known = of_place(&place);
+        for (own, known) in found.expected.iter().zip(&known) {
+            assert!((own - known).abs() < 1e-7 * (1.0 + known.abs()), "{text}: {own} {known}");
+        }
+        // which way the derivatives were found
+        let mut problem = made.problem();
+        let (names, phase) = (Names::of(&problem), problem.experiments[0].phase.clone());
+        let phase = CompiledPhase::new(&mut problem.system, &phase, &names, None).unwrap();
+        let at = At { values: &values, slopes: &values.map(|value| value * std::f64::consts::LN_10) };
+        let rest = Moment { slopes: DMatrix::zeros(known.len(), 3), states: known.clone() };
+        let slopes = phase.slopes_at_rest(&at, &phase.start(&at, None), &rest);
+        assert_eq!(slopes.is_some(), is_determined, "{text}");
+        for i in 0..3 {
+            let moved = |by: f64| {
+                let mut moved = place;
+                moved[i] += by;
+                of_place(&moved)
+            };
+            let slopes: Vec<f64> =
+                moved(1e-4).iter().zip(moved(-1e-4)).map(|(one, other)| (one - other) / 2e-4).collect();
+            let gradient: f64 = slopes.iter().zip(&known).map(|(slope, known)| slope * (known - 0.3)).sum();
+            near(found.gradient[i], gradient, 1e-5);
+        }
     }
 }
 

@@ -20,6 +20,14 @@ const LEAST_INFORMATION: f64 = 1e-12;
 /// No parameter goes farther in one step, in decades or units of its logarithm; of one on a linear scale, relative to its range.
 const LONGEST: f64 = 1.0;
 
+/// A step is made that gains more than this part of what it promises.
+const LEAST_GAIN: f64 = 1e-4;
+
+/// From so many parameters on a step is first tried without sensitivities after one that failed, where it promises so much that errors of the integration
+/// do not matter: one that fails, too, needs none.
+const MANY: usize = 8;
+const PLAIN: f64 = 1e-2;
+
 /// What is searched, with some parameters fixed.
 pub(super) struct Search<'l> {
     pub likelihood: &'l Likelihood,
@@ -158,14 +166,22 @@ impl Solver<Search<'_>, Iteration> for Scoring {
                     continue;
                 }
                 let tried = problem.problem("simulations", |search| {
-                    Ok(search.likelihood.at(there.as_slice(), search.exactness, &|| (search.interrupted)()))
+                    let interrupted = || (search.interrupted)();
+                    if self.growth > 2.0 && there.len() >= MANY && gain > PLAIN {
+                        match search.likelihood.objective(there.as_slice(), search.exactness, &interrupted) {
+                            Ok(alone) if here.objective - alone <= LEAST_GAIN * gain => return Ok(None),
+                            Ok(_) => {}
+                            Err(error) => return Ok(Some(Err(error))),
+                        }
+                    }
+                    Ok(Some(search.likelihood.at(there.as_slice(), search.exactness, &interrupted)))
                 })?;
                 match tried {
-                    Err(error @ super::NotFollowed::Interrupted) => return Err(error.into()),
-                    Err(_) => {}
-                    Ok(tried) => {
+                    Some(Err(error @ super::NotFollowed::Interrupted)) => return Err(error.into()),
+                    None | Some(Err(_)) => {}
+                    Some(Ok(tried)) => {
                         let ratio = (here.objective - tried.objective) / gain;
-                        if ratio > 1e-4 {
+                        if ratio > LEAST_GAIN {
                             let shrink = 1.0 - (2.0 * ratio - 1.0).powi(3);
                             self.lambda = (self.lambda * shrink.clamp(0.1, 2.0)).max(1e-12);
                             self.growth = 2.0;

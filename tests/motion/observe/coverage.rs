@@ -4,7 +4,7 @@
 //! PALMISTRY_SHAPES=300 cargo test --release --test motion -- --ignored shape_coverage --nocapture
 //! ```
 //!
-//! A body takes seven seconds of one core, so that a row of 75 takes nine minutes: `PALMISTRY_ROWS=1,8` asks for the first and the last of the eight alone,
+//! A body takes two seconds to two minutes of one core: `PALMISTRY_ROWS=1,8` asks for the first and the last of the eight rows alone,
 //! `PALMISTRY_BODIES=7,12` for two bodies alone, by the numbers that are printed of those that fail.
 
 use crate::observe::{NEVER, answers, experiment, text, with};
@@ -224,34 +224,42 @@ fn shape_coverage() {
 /// A few bodies of each kind: each lies in its band.
 #[test]
 fn a_few_bodies_lie_in_their_bands() {
-    for family in [Family::Splines, Family::Smooth] {
-        for noise in [0.0, 1e-4] {
-            let counts = study(family, noise, &[0], 33);
-            println!("{family:?} {noise:e}: {counts:?}");
-            assert!(counts.whole == 1 && counts.held == 1, "{counts:?}");
-        }
+    for (family, noise) in [(Family::Splines, 0.0), (Family::Splines, 1e-4), (Family::Smooth, 0.0)] {
+        let counts = study(family, noise, &[0], 33);
+        println!("{family:?} {noise:e}: {counts:?}");
+        assert!(counts.whole == 1 && counts.held == 1, "{counts:?}");
     }
 }
 
-/// Bodies that hardly turn: many motions explain the contacts, and the search that goes on from discs ended 16 to 575 bands off with each of these. What is told lies in its band.
+/// Bodies that hardly turn, with how many outlines are told: many motions explain the contacts, and the search that goes on from discs ended 16 to 575 bands off
+/// with each of these. The mass of the first one's only candidate does not fit into it. The two at the ends are tried by every test, the others take minutes.
+const HARDLY_TURN: [(Family, f64, u64, usize, Option<usize>); 4] = [
+    (Family::Splines, 1e-5, 332, 53, Some(0)),
+    (Family::Splines, 1e-4, 333, 45, None),
+    (Family::Smooth, 0.0, 335, 8, Some(1)),
+    (Family::Smooth, 1e-4, 337, 8, Some(1)),
+];
+
+/// What is told of bodies that hardly turn lies in its band.
+fn hardly_turn(places: &[usize]) {
+    places.par_iter().for_each(|place| {
+        let (family, noise, seed, body, told) = HARDLY_TURN[*place];
+        let counts = study(family, noise, &[body], seed);
+        println!("{counts:?}");
+        assert_eq!(counts.held, counts.told, "{counts:?}");
+        assert!(told.is_none_or(|told| told == counts.told), "{counts:?}");
+    });
+}
+
 #[test]
 fn bodies_that_hardly_turn_are_found_or_tell_nothing() {
-    let bodies = [
-        (Family::Splines, 1e-5, 332, 53),
-        (Family::Splines, 1e-4, 333, 45),
-        (Family::Smooth, 0.0, 335, 8),
-        (Family::Smooth, 1e-4, 337, 8),
-    ];
-    let counts: Vec<Counts> = bodies
-        .into_par_iter()
-        .map(|(family, noise, seed, body)| study(family, noise, &[body], seed))
-        .collect();
-    let told: Vec<usize> = counts.iter().map(|counts| counts.told).collect();
-    println!("{counts:?}");
-    assert!(counts.iter().all(|counts| counts.held == counts.told), "{counts:?}");
-    // the mass of the first one's only candidate does not fit into it
-    assert_eq!(told[0], 0, "{counts:?}");
-    assert_eq!(told[2..], [1, 1], "{counts:?}");
+    hardly_turn(&[0, 3]);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn more_bodies_that_hardly_turn_are_found_or_tell_nothing() {
+    hardly_turn(&[1, 2]);
 }
 
 /// Section 4.6: without noise the thesis's spline is found to a billionth, its three points among it; with 0.1 mm it lies in its band. What was touched bounds its area.
