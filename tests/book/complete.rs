@@ -95,7 +95,7 @@ fn every_field_of_the_json_is_named() {
     ];
     for run in runs {
         let found = json(&palmistry(&[run, &["--json"]].concat()));
-        assert_eq!(found["version"], 3, "{run:?}");
+        assert_eq!(found["version"], 4, "{run:?}");
         let part = chapter
             .split("\n## ")
             .find(|part| part.lines().next().is_some_and(|title| title.contains(&format!("`{}`", run[0]))))

@@ -132,8 +132,8 @@ fn the_main_job_holds() {
                     let own: Vec<_> = r["branches"].as_array().map_or(vec![&r["own_rows"]["rank_histogram"]], |list| {
                         list.iter().map(|b| &b["own_rows"]["rank_histogram"]).collect()
                     });
-                    if r["pole"].is_string() {
-                        return json!({ "set": r["set"], "pole": r["pole"] });
+                    if r["singularity"].is_string() {
+                        return json!({ "set": r["set"], "singularity": r["singularity"] });
                     }
                     json!({ "set": r["set"], "full": r["rank_histogram"], "own": own, "certified": r["certified"] })
                 })

@@ -263,7 +263,7 @@ fn a_set_without_a_rank_is_not_as_expected() {
     assert!(line.contains(why) && line.ends_with("not as expected"), "{line}");
     // no claim fails, and the summary does not say that all is well
     assert!(text.contains("0 claims; 0 not as expected, and 1 result besides the claims\n"), "{text}");
-    assert!(page.contains("1 result</b> besides the claims is not as expected"), "the page's summary");
+    assert!(page.contains("1 result besides the claims</b> is not as expected"), "the page's summary");
 }
 
 /// The words of the new entries are names all the same.

@@ -128,7 +128,7 @@ fn only_rank(histogram: &Value) -> usize {
 
 /// The rank on a set, of all words and of the own rows, on each branch of its conditions the same; nothing for a pole.
 fn ranks(set: &Value) -> Option<(usize, usize)> {
-    if set["pole"].is_string() {
+    if set["singularity"].is_string() {
         return None;
     }
     let own: Vec<usize> = match set["branches"].as_array() {

@@ -252,7 +252,7 @@ fn a_state_without_output_is_left_out() {
     let file = write(&folder, "log.proof", text);
     let found = rank(&[file.to_str().unwrap(), "--samples", "10"]);
     assert_eq!(found["samples"], 0);
-    let poles = found["poles"].as_object().unwrap();
+    let poles = found["singularities"].as_object().unwrap();
     assert!(poles.keys().all(|why| why.contains("outside of")) && poles.values().all(|count| count == 10));
 }
 

@@ -124,7 +124,8 @@ fn one_seven_and_sixty_four_shards_give_the_same_to_the_last_bit() {
     assert_eq!(branches(1).len(), 2);
     assert_ne!(branches(1)[0]["unobservable"], branches(1)[1]["unobservable"]);
     assert!(branches(2)[0]["unobservable"].as_array().unwrap().len() > 1);
-    let poles: u64 = branches(4)[0]["poles"].as_object().unwrap().values().filter_map(Value::as_u64).sum();
+    let poles: u64 =
+        branches(4)[0]["singularities"].as_object().unwrap().values().filter_map(Value::as_u64).sum();
     assert!((100..231).contains(&poles), "{poles}");
     assert_eq!(branches(5).len(), 2);
     assert!(branches(5).iter().all(|branch| branch["own_rows"]["samples"] == 331));

@@ -88,7 +88,7 @@ impl Objection {
     /// As one word, for machines.
     pub fn word(&self) -> &'static str {
         match self {
-            Objection::Pole(_) => "pole",
+            Objection::Pole(_) => "singularity",
             Objection::Short { .. } => "rank",
             Objection::Condition { .. } => "condition",
             Objection::Lost(_) => "lost",

@@ -259,7 +259,7 @@ pub fn plan_json(scene: &Scene, plan: &ScenePlan, outcomes: &[Outcome]) -> Value
             "from": if plan.along_truth { "truth" } else { "guess" },
             "rank": along.rank, "of": along.of, "asked": along.asked, "decided": along.decided,
             "derivatives": along.order, "condition": finite(along.condition), "at": along.at,
-            "pole": along.pole.as_ref().map(|pole| json!({ "divisor": pole.divisor, "time": pole.time })),
+            "singularity": along.pole.as_ref().map(|pole| json!({ "divisor": pole.divisor, "time": pole.time })),
             "lost": along.lost,
         },
     })

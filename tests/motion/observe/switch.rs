@@ -65,7 +65,7 @@ fn the_rank_says_who_answers() {
             assert_eq!((rank.rank, rank.of, why.word()), (0, 2, "rank"));
         } else {
             let pole = rank.pole.as_ref().unwrap();
-            assert_eq!((pole.divisor.as_str(), why.word()), ("c", "pole"));
+            assert_eq!((pole.divisor.as_str(), why.word()), ("c", "singularity"));
             assert!((pole.time - 2.53).abs() < 1e-5, "{}", pole.time);
         }
     }
@@ -81,7 +81,7 @@ fn a_limit_of_the_condition_silences() {
     assert!(windows.iter().all(|window| window.chosen.is_none()));
     let words: Vec<&str> =
         windows.iter().map(|own| own.estimates[0].objection.as_ref().unwrap().word()).collect();
-    assert_eq!(words, ["condition", "condition", "pole", "condition", "condition"]);
+    assert_eq!(words, ["condition", "condition", "singularity", "condition", "condition"]);
 }
 
 /// The same by the program: text, fields, status, and what a switch asks for.
@@ -98,8 +98,8 @@ fn the_program_says_who_answered_and_why() {
     let found = json(&palmistry(&["observe", file.to_str().unwrap(), "--json"]));
     let asked = &found["windows"][2]["modes"];
     assert_eq!(found["windows"][2]["mode"], "place");
-    assert_eq!(asked[0]["rank"]["objection"], "pole");
-    assert_eq!(asked[0]["rank"]["pole"]["divisor"], "c");
+    assert_eq!(asked[0]["rank"]["objection"], "singularity");
+    assert_eq!(asked[0]["rank"]["singularity"]["divisor"], "c");
     assert_eq!(
         (&asked[1]["rank"]["rank"], &asked[1]["rank"]["objection"]),
         (&2.into(), &serde_json::Value::Null)

@@ -13,7 +13,7 @@ fn standing_word(standing: BoxStanding) -> &'static str {
     match standing {
         BoxStanding::Proved => "proved",
         BoxStanding::MinorVanishes => "minor vanishes",
-        BoxStanding::Pole => "pole",
+        BoxStanding::Pole => "singularity",
         BoxStanding::Undecided => "undecided",
     }
 }

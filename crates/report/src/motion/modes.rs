@@ -19,7 +19,7 @@ fn rank_json(rank: &MotionRankFound, objection: Option<&Objection>) -> Value {
         "smallest_singular_value": finite(rank.smallest),
         "condition": finite(rank.condition),
         "at": rank.at,
-        "pole": rank.pole.as_ref().map(|pole| json!({ "divisor": pole.divisor, "at": pole.time })),
+        "singularity": rank.pole.as_ref().map(|pole| json!({ "divisor": pole.divisor, "at": pole.time })),
         "objection": objection.map(Objection::word),
         "why": objection.map(ToString::to_string),
     })

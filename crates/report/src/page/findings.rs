@@ -69,7 +69,7 @@ fn line_json(line: &LineFound) -> Value {
 fn set_json(rank: &SetRank) -> Value {
     let mut object = match rank.answer() {
         Ok(answer) => rank_json(answer),
-        Err(why) if rank.is_pole() => json!({ "pole": why }),
+        Err(why) if rank.is_pole() => json!({ "singularity": why }),
         Err(why) => json!({ "not_decided": why }),
     };
     object["set"] = json!(rank.name());

@@ -96,7 +96,7 @@ pub(super) fn sweep_json(report: &SweepReport) -> Value {
                 (name.clone(), json!({ "exact": exact, "value": rational_to_f64(part) }))
             }).collect::<serde_json::Map<_, _>>(),
         })).collect::<Vec<_>>(),
-        "poles": report.poles,
+        "singularities": report.poles,
         "seconds": report.seconds,
         "interrupted": report.interrupted,
     });

@@ -25,7 +25,7 @@ fn by_way(of: impl Fn(Way) -> Value) -> Value {
 fn line_json(line: &Line) -> Value {
     let end = match &line.end {
         LineLimit::Ranks { ranks, certified } => json!({ "ranks": ranks, "certified": certified }),
-        LineLimit::Pole(why) => json!({ "pole": why }),
+        LineLimit::Pole(why) => json!({ "singularity": why }),
         LineLimit::Infinity => json!({ "infinity": true }),
     };
     json!({
@@ -35,7 +35,7 @@ fn line_json(line: &Line) -> Value {
         "distances": line.distances,
         "true_ranks": line.ranks,
         "certified": line.certified,
-        "poles": line.poles,
+        "singularities": line.poles,
         "on_the_set": end,
         "ways": by_way(|way| {
             let found = &line.ways[way.place()];
@@ -176,7 +176,7 @@ fn lines_text(study: &StressStudy, out: &mut String) {
     let rows = study.lines.iter().map(|line| {
         let end = match &line.end {
             LineLimit::Ranks { ranks, .. } => ranks_text(ranks.iter()),
-            LineLimit::Pole(_) => "pole".to_owned(),
+            LineLimit::Pole(_) => "undefined".to_owned(),
             LineLimit::Infinity => "infinite".to_owned(),
         };
         let mut cells = vec![ranks_text(line.ranks.iter()), end];
