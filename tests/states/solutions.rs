@@ -69,7 +69,14 @@ fn answers_by_hand() {
             "x 1!, y 2!, z 2!, a 2!, b 2!, c 2!, d 2!",
         ),
         // a known beginning tells the sign
-        ("state x param k unknown initial x = 1 drift f x' = k*x output x^2", "k 1"),
+        ("state x param k unknown initial x = 1 drift f x' = k*x output x^2", "k 1!"),
+        // what numbers tell at the beginning: the third derivative is 2*a; a square has two roots there, too; where x stays zero nothing is told of k
+        ("state x param a unknown initial x = 0 drift f x' = 1 + a*x^2 output x", "a 1!"),
+        ("state x param a unknown initial x = 7/3 drift f x' = 1 + a^2*x^2 output x", "a 2!"),
+        (
+            "state x, y param k, a unknown initial x = 0 drift f x' = k*x y' = a*x + a output y",
+            "y 1!, k infinity!, a 1!",
+        ),
         // what is known tells the scale
         ("state x param a unknown param b drift f x' = a*b*x output x", "x 1!, a 1!"),
         // H. Hong et al. (2020), example 2.14: one experiment leaves two values, two leave one

@@ -15,7 +15,9 @@
 //! vanishes. That so and so many values are met and no more is shown in the same way: of the polynomial whose roots are the values,
 //! of degree `D`, neither the leading coefficient nor the discriminant may vanish.
 //!
-//! Nothing of it depends on how many derivatives were taken: those that are left out can only distinguish more values.
+//! Nothing of it depends on how many derivatives were taken: those that are left out can only distinguish more values. Nor does it matter that some states begin
+//! at given numbers, where the derivatives are independent in the other unknowns on the set of these states: the numbers are put in, `a` and `b` are points of
+//! that set, and the coefficients grow.
 //!
 //! The coefficients are bounded by the arithmetic theorem of Bezout (T. Krick, L. M. Pardo and M. Sombra, *Sharp estimates for the
 //! arithmetic Nullstellensatz*, Duke Math. J. 109 (2001), corollary 2.11), with twice as much room for the logarithms of the
@@ -56,9 +58,15 @@ fn size(polynomial: &Exact) -> Size {
 
 /// The bounds for the value of an unknown, or of an expression.
 pub(super) fn bounds(model: &Model, orders: &Orders, asked: Option<&Quotient>) -> Option<Bounds> {
-    if !model.angles.is_empty() || model.is_on_a_set() {
+    if !model.angles.is_empty() {
         return None;
     }
+    // a number in the place of a state: with its denominators cleared, coefficients grow by as many bits for each degree
+    let bits = model.bits_of_given_numbers()?;
+    let size = |polynomial: &Exact| {
+        let free = size(polynomial);
+        Size { bits: free.bits + free.degree * bits, ..free }
+    };
     let rates = model.variables.iter().filter_map(|variable| match &variable.motion {
         Motion::Moves(rate) => Some(rate),
         _ => None,

@@ -4,6 +4,7 @@
 
 use super::exact::Exact;
 use crate::observability::driven::{Driven, driven, told_constants};
+use dashu::base::BitTest;
 use palmistry_lang::{Assignment, System, Time};
 use palmistry_math::expression::{Graph, Input, NodeId, Program, Symbol, expand_angles};
 use palmistry_math::number::{Arithmetic, Fraction, Fractions, Function, Refusal};
@@ -196,6 +197,15 @@ impl Model {
     /// Whether initial conditions are given by numbers or expressions, and not free.
     pub fn is_on_a_set(&self) -> bool {
         !self.given.is_empty()
+    }
+
+    /// How many bits the numbers have that are given as initial conditions, numerator and denominator of the longest; nothing where one is no number.
+    pub fn bits_of_given_numbers(&self) -> Option<f64> {
+        let bits = |(_, node): &(usize, NodeId)| {
+            let number = self.graph.constant_value(*node)?;
+            Some(number.numerator().bit_len() as f64 + number.denominator().bit_len() as f64)
+        };
+        self.given.iter().map(bits).try_fold(0.0, |most, bits| Some(f64::max(most, bits?)))
     }
 
     /// The values that the file gives, as a program.
