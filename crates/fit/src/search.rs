@@ -214,12 +214,9 @@ fn from_near(
             (place + normal * size * unit).clamp(low, high)
         };
         let start: Vec<f64> = likelihood.problem().parameters.iter().zip(place).map(kicked).collect();
-        match likelihood.at(&start, Exactness::Search, &|| interrupted()) {
-            Ok(here) => {
-                return search(likelihood, &start, here, &[], (steps, Exactness::Search), interrupted);
-            }
-            Err(NotFollowed::Interrupted) => return ended(start, StartEnd::Interrupted),
-            Err(error) => why = error.to_string(),
+        match search_from(likelihood, start, steps, interrupted) {
+            Ok(found) => return found,
+            Err(error) => why = error,
         }
     }
     ended(Vec::new(), StartEnd::NoStart(why))
@@ -298,15 +295,26 @@ fn from_draws(
     }
     candidates.sort_by(|one, other| one.1.total_cmp(&other.1));
     for (start, _) in candidates {
-        match likelihood.at(&start, Exactness::Search, &|| interrupted()) {
-            Ok(here) => {
-                return search(likelihood, &start, here, &[], (steps, Exactness::Search), interrupted);
-            }
-            Err(NotFollowed::Interrupted) => return ended(start, StartEnd::Interrupted),
-            Err(error) => why = error.to_string(),
+        match search_from(likelihood, start, steps, interrupted) {
+            Ok(found) => return found,
+            Err(error) => why = error,
         }
     }
     ended(Vec::new(), StartEnd::NoStart(why))
+}
+
+/// A search from a start; an error says why it cannot be simulated.
+fn search_from(
+    likelihood: &Likelihood,
+    start: Vec<f64>,
+    steps: u64,
+    interrupted: &(dyn Fn() -> bool + Sync),
+) -> Result<SearchEnd, String> {
+    match likelihood.at(&start, Exactness::Search, &|| interrupted()) {
+        Ok(here) => Ok(search(likelihood, &start, here, &[], (steps, Exactness::Search), interrupted)),
+        Err(NotFollowed::Interrupted) => Ok(ended(start, StartEnd::Interrupted)),
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 fn ended(start: Vec<f64>, end: StartEnd) -> SearchEnd {

@@ -26,7 +26,7 @@ const ASIDE: [f64; 4] = [0.37, 0.81, 0.59, 0.23];
 /// Added to the size of a state.
 const LEAST: f64 = 1e-3;
 
-/// So near to each other, in parts of the largest, are derivatives that are the same.
+/// So near to each other are derivatives of a state that are the same, in parts of the largest of them and of the state.
 const AGREES: f64 = 1e-3;
 
 /// The size of a state, as it counts.
@@ -79,8 +79,12 @@ impl CompiledPhase {
         let nearer: Vec<f64> =
             rest.states.iter().zip(near.step.iter()).map(|(one, step)| one + step).collect();
         let nearer = self.equations(at, start, &nearer)?;
-        let differs = (&near.slopes - &nearer.slopes).amax();
-        let agree = near.laws == nearer.laws && differs <= AGREES * (1.0 + nearer.slopes.amax());
+        // state by state, in the unit of each
+        let is_same = |(row, state): (usize, &f64)| {
+            let (one, other) = (near.slopes.row(row), nearer.slopes.row(row));
+            (one - other).amax() <= AGREES * (size(*state) + other.amax())
+        };
+        let agree = near.laws == nearer.laws && rest.states.iter().enumerate().all(is_same);
         agree.then_some(nearer.slopes)
     }
 
@@ -89,21 +93,12 @@ impl CompiledPhase {
         let (n, p) = (states.len(), at.values.len());
         let here = self.linearised(at, states)?;
         // a slow reaction counts as much as a fast one, and states by their sizes, as where it is asked whether they rest
-        let rows: Vec<f64> = here
-            .by_states
-            .row_iter()
-            .map(|row| {
-                match row
-                    .iter()
-                    .zip(states)
-                    .map(|(slope, state)| (slope * size(*state)).abs())
-                    .fold(0.0, f64::max)
-                {
-                    0.0 => 1.0,
-                    largest => largest,
-                }
-            })
-            .collect();
+        let largest_in = |row: usize| {
+            let terms = (0..n).map(|column| (here.by_states[(row, column)] * size(states[column])).abs());
+            terms.fold(0.0, f64::max)
+        };
+        let rows: Vec<f64> =
+            (0..n).map(largest_in).map(|largest| if largest == 0.0 { 1.0 } else { largest }).collect();
         let scaled = DMatrix::from_fn(n, n, |i, j| here.by_states[(i, j)] * size(states[j]) / rows[i]);
         let svd = scaled.clone().try_svd(true, false, f64::EPSILON, MOST_ITERATIONS)?;
         let from_left = svd.u.as_ref()?;
