@@ -5,6 +5,8 @@ use crate::common::{json, palmistry, words_of};
 use palmistry::observability::{Observability, Solutions, SolutionsOf, SolutionsQuestion, solutions};
 use palmistry::sweep::SolutionsWanted;
 use palmistry::{System, answer_solutions};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -87,6 +89,90 @@ fn answers_by_hand() {
     ];
     for (text, expected) in rows {
         assert_eq!(table(text), expected, "{text}");
+    }
+}
+
+/// Two values of a drawn function that a symmetry tells apart generically may be one where a state begins at a number, as those of `x*k` where `x = 0`.
+/// The points with the same outputs are known by hand; the witness puts them into the function, in whole numbers.
+#[test]
+fn functions_of_states_that_begin_at_numbers() {
+    let mut rng = ChaCha8Rng::seed_from_u64(41);
+    let systems = [
+        ("x' = k^2 + c*x c' = 0", "output x, c", [1, -1]),
+        ("x' = k^2 + x c' = k^2*x", "output x, c", [1, -1]),
+        ("x' = k^2 c' = x", "output x, c", [1, -1]),
+    ];
+    let mut met = BTreeMap::new();
+    for number in 0..60 {
+        let (rates, outputs, signs) = systems[number % systems.len()];
+        let first = rng.random_range(-1..=1i128);
+        // a polynomial in `x - first` or `x`, `c` and `k`
+        let terms: Vec<[i128; 4]> = (0..rng.random_range(1..=3))
+            .map(|_| {
+                [
+                    rng.random_range(1..=3),
+                    rng.random_range(0..=2),
+                    rng.random_range(0..=1),
+                    rng.random_range(0..=2),
+                ]
+            })
+            .collect();
+        let shift = if rng.random_range(0..2) == 0 { first } else { 0 };
+        let text: Vec<String> =
+            terms.iter().map(|[a, n, m, l]| format!("{a}*(x - ({shift}))^{n}*c^{m}*k^{l}")).collect();
+        let value = |c: i128, k: i128| -> i128 {
+            terms
+                .iter()
+                .map(|[a, n, m, l]| a * (first - shift).pow(*n as u32) * c.pow(*m as u32) * k.pow(*l as u32))
+                .sum()
+        };
+        let differs = [(2, 3), (5, 7), (-3, 4)].iter().any(|(c, k)| value(*c, *k) != value(*c, signs[1] * k));
+        let count = if differs { 2 } else { 1 };
+        // of a number nothing is asked
+        if terms.iter().all(|[_, n, m, l]| n + m + l == 0) {
+            continue;
+        }
+        let expression = text.join(" + ");
+        let file = format!(
+            "state x, c param k unknown initial x = {first} drift f {rates} {outputs} \
+             claim 1: solutions({expression}) = {count} claim 2 expect refuted: solutions({expression}) = {}",
+            3 - count
+        );
+        for outcome in palmistry::prove(&read(&file)) {
+            assert!(outcome.ok, "{file}\n{} {}: {:?}", outcome.id, outcome.statement, outcome.verdict);
+        }
+        *met.entry(count).or_insert(0) += 1;
+    }
+    assert!(met.values().all(|count| *count > 10) && met.len() == 2, "{met:?}");
+}
+
+/// Local identifiability leaves finitely many values where all is algebraic on the line and the circle, or made of exponentials, logarithms, roots
+/// and arcs; the sine of a number has one value at infinitely many of them.
+#[test]
+fn sines_of_numbers_have_infinitely_many_arguments() {
+    let finite = [
+        ("angle k drift f x' = sin(k) output x", "k", true),
+        ("angle k drift f x' = sin(2*k)*x output x", "k", true),
+        ("drift f x' = exp(k^2)*x output x", "k", true),
+        ("drift f x' = x*atan(k) output x", "k", true),
+        ("param p drift f x' = k*sin(p*3) output x", "k", true),
+        ("known u(t) drift f x' = k^3*sin(u) output x", "k", true),
+        ("drift f x' = sin(k) output x", "k", false),
+        ("drift f x' = 1 output cos(x + k), x", "k", false),
+        ("drift f x' = 1 output sin(x), cos(x), k", "x", false),
+        ("drift f x' = x*tan(k) output x", "k", false),
+        ("drift f x' = exp(sin(k)) output x", "k", false),
+        ("drift f x' = x + cos(k^2) output x", "k", false),
+    ];
+    for (text, name, is_finite) in finite {
+        let word = if is_finite { "" } else { " expect undecided" };
+        let wrong = if is_finite { " expect refuted" } else { " expect undecided" };
+        let text = format!(
+            "state x param k unknown {text} claim 1{word}: solutions({name}) < infinity claim 2{wrong}: solutions({name}) = infinity"
+        );
+        for outcome in palmistry::prove(&read(&text)) {
+            assert!(outcome.ok, "{text}\n{} {}: {:?}", outcome.id, outcome.statement, outcome.verdict);
+        }
     }
 }
 

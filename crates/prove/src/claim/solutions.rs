@@ -9,7 +9,7 @@ use super::verdict::{Verdict, Witness};
 use palmistry_io::UNINTERRUPTED;
 use palmistry_lang::{Statement, System, Value};
 use palmistry_math::expression::syntax::Relation;
-use palmistry_math::expression::{LOG2_ERROR, NodeId};
+use palmistry_math::expression::{LOG2_ERROR, Node, NodeId};
 use palmistry_rank::observability::{
     Observability, Solutions, SolutionsOf, SolutionsQuestion, solutions, solve_conditions,
 };
@@ -117,15 +117,25 @@ pub(super) fn decide_solutions(
         );
     };
     let branch = branch.clone().tied_by_outputs(system).map_err(|why| why.to_string())?;
+    // of an unknown its own values are counted: those of an angle up to whole turns
+    let unknown = match system.graph.node(asking.expression) {
+        Node::Symbol(symbol) => system.unknowns().iter().position(|unknown| *unknown == symbol),
+        _ => None,
+    };
+    let expressions = match unknown {
+        Some(_) => Vec::new(),
+        None => vec![(name, asking.expression)],
+    };
     let question = SolutionsQuestion {
         conditions: branch.values.clone(),
-        expressions: vec![(name, asking.expression)],
+        expressions,
         work: WORK,
         interrupt: &UNINTERRUPTED,
     };
     let answer = solutions(system, &question).map_err(|why| why.to_string())?;
-    let found = answer.unknowns.last().ok_or("there is nothing to count")?;
-    let proved = proved(found);
+    let place = unknown.unwrap_or(answer.unknowns.len() - 1);
+    let found = answer.unknowns.get(place).ok_or("there is nothing to count")?;
+    let proved = proved(found, answer.is_finite_where_local);
     match asking.holds(proved.least, proved.most) {
         Some(true) => Ok(Verdict::Proved { engine: proved.engine, log2_error: proved.log2_error }),
         Some(false) => {
@@ -147,8 +157,8 @@ pub(super) fn decide_solutions(
     }
 }
 
-/// What is proved, for what follows from it.
-fn proved(found: &SolutionsOf) -> Proved {
+/// What is proved, for what follows from it; `is_finite_where_local` as in the answer.
+fn proved(found: &SolutionsOf, is_finite_where_local: bool) -> Proved {
     let map = found.at_least.as_ref();
     let least = map.map_or(1, |(least, _)| *least);
     let by_map = map.map(|(_, map)| format!("all outputs are the same with {map}"));
@@ -161,11 +171,11 @@ fn proved(found: &SolutionsOf) -> Proved {
             let engine = by_map.map_or_else(|| BASES.to_owned(), |map| format!("{BASES}; {map}"));
             Proved { least, most, engine, log2_error }
         }
-        (Observability::Yes, _) => {
+        (Observability::Yes, _) if is_finite_where_local => {
             let engine = by_map.unwrap_or_else(|| SERIES.to_owned());
             Proved { least, most: usize::MAX - 1, engine, log2_error: found.local_error }
         }
-        (Observability::Undecided, _) => {
+        (Observability::Yes | Observability::Undecided, _) => {
             let engine = by_map.unwrap_or_default();
             Proved { least, most: usize::MAX, engine, log2_error: f64::NEG_INFINITY }
         }

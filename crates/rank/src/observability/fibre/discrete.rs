@@ -7,9 +7,14 @@
 //! error. Permutations are found by refining a partition of the unknowns, the signs by linear algebra modulo 2.
 
 use super::exact::{Exact, Monomial};
+use super::jets::Jet;
 use super::model::{Model, Motion, Quotient};
+use super::point::{Source, random_point};
 use dashu::base::{Abs, Sign};
+use palmistry_math::number::PrimeField;
 use palmistry_math::number::polynomial::Ring;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 use std::collections::hash_map::DefaultHasher;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::hash::{Hash, Hasher};
@@ -78,16 +83,6 @@ impl Exchange {
         });
         rests && moves && model.outputs.iter().all(|output| self.takes(output, output, false))
     }
-
-    /// Whether an expression has another value at the image.
-    fn differs(&self, other: &Exchange, asked: &Quotient) -> bool {
-        let at = |map: &Exchange| (map.of_polynomial(&asked.top), map.of_polynomial(&asked.bottom));
-        let ((a, b), (c, d)) = (at(self), at(other));
-        match (a.mul(&d), c.mul(&b)) {
-            (Some(left), Some(right)) => left != right,
-            _ => false,
-        }
-    }
 }
 
 /// How many values an unknown, by the place of its variable, has at the images of a state.
@@ -97,15 +92,28 @@ pub(super) fn values_of_variable(exchanges: &[Exchange], place: usize) -> usize 
     images.len()
 }
 
-/// The same of an expression.
+/// The same of an expression: at a random point that has the given initial conditions, modulo a prime. Values that differ there differ almost
+/// everywhere on the set; others may be equal on it alone, as those of `x*k` where `x = 0`, and are not counted.
 pub(super) fn values_of_expression(model: &Model, exchanges: &[Exchange], asked: &Quotient) -> usize {
-    let mut met = vec![Exchange { of: (0..model.variables.len()).map(|place| (place, false)).collect() }];
-    for map in exchanges {
-        if met.iter().all(|other| map.differs(other, asked)) {
-            met.push(map.clone());
-        }
+    let given = model.given_program();
+    // a root of a number is no number that is drawn
+    if given.unknown_function(&model.graph).is_some() {
+        return 1;
     }
-    met.len()
+    let mut rng = ChaCha8Rng::seed_from_u64(0x696d_6167_6573); // any fixed seed: what differs, differs
+    let field = PrimeField::random(&mut rng);
+    let mut source = Source { rng: &mut rng, given: HashMap::new() };
+    let Ok(point) = random_point(model, field, &mut source) else { return 1 };
+    let at = |polynomial: &Exact| {
+        let value = Jet::of(&field, polynomial).with_values(&field, |variable| point.get(&variable).copied());
+        value.as_constant()
+    };
+    let value = |top: &Exact, bottom: &Exact| Some(field.product(at(top)?, field.inverse(at(bottom)?)?));
+    let images = exchanges
+        .iter()
+        .map(|map| value(&map.of_polynomial(&asked.top), &map.of_polynomial(&asked.bottom)))
+        .chain([value(&asked.top, &asked.bottom)]);
+    images.flatten().collect::<BTreeSet<u64>>().len().max(1)
 }
 
 /// The maps that are found, but the one that changes nothing.

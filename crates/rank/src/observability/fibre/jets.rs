@@ -33,6 +33,15 @@ impl Jet {
         self.terms.is_empty()
     }
 
+    /// The number that it is, if it is one.
+    pub fn as_constant(&self) -> Option<u64> {
+        match self.terms.len() {
+            0 => Some(0),
+            1 => self.terms.get(&Monomial::new()).copied(),
+            _ => None,
+        }
+    }
+
     pub fn variables(&self) -> std::collections::BTreeSet<u32> {
         self.terms.keys().flatten().map(|(variable, _)| *variable).collect()
     }

@@ -36,6 +36,7 @@ mod slice;
 mod tests;
 
 use super::Frame;
+use super::driven::{Driven, driven, told_constants};
 use super::generic::{GenericAnswer, Observability, sum_of_errors};
 use super::needed::CodistributionError;
 use count::count;
@@ -44,8 +45,10 @@ use discrete::{Exchange, exchanges, in_words, values_of_expression, values_of_va
 pub use mirror::{Image, Mirror, mirrors};
 use model::Model;
 use palmistry_lang::{Assignment, System, UnknownKind};
-use palmistry_math::expression::NodeId;
+use palmistry_math::expression::{Node, NodeId, expand_angles};
+use palmistry_math::number::Function;
 pub(super) use slice::{SlicedVariable, Slicer};
+use std::collections::HashSet;
 use std::sync::atomic::AtomicBool;
 
 /// How many values give the same outputs, at almost all states.
@@ -118,6 +121,8 @@ pub struct SolutionsAnswer {
     pub second: Option<SecondPoint>,
     /// Whether initial conditions are given, so that further derivatives might be informative.
     pub orders_are_open: bool,
+    /// Whether what is observable locally has finitely many values: see [`has_finite_fibres`].
+    pub is_finite_where_local: bool,
 }
 
 /// What is asked.
@@ -199,6 +204,7 @@ pub fn solutions_telling(
         work: 0,
         second: None,
         orders_are_open: false,
+        is_finite_where_local: has_finite_fibres(system, question),
     };
     let mut tell = |answer: &SolutionsAnswer| {
         let mut so_far = answer.clone();
@@ -238,13 +244,51 @@ fn conclude(answer: &mut SolutionsAnswer, counted: &Result<(), String>, generic:
             (Observability::Yes, Ok(())) => {
                 let least = of_it.at_least.as_ref().map_or(1, |(least, _)| *least);
                 if matches!(of_it.solutions, Solutions::Finite(count) if count < least) {
-                    // what is proved stands; the random points were special ones
+                    // one of the two is wrong, and neither is believed
                     let why = "the random points have fewer values than a symmetry shows".to_owned();
-                    (of_it.solutions, of_it.at_most) = (Solutions::Undecided(why), None);
+                    (of_it.solutions, of_it.at_most, of_it.at_least) =
+                        (Solutions::Undecided(why), None, None);
                 }
             }
         }
     }
+}
+
+/// Whether points of a generic fibre that are apart from each other are finitely many: where no sine or cosine is taken of an unknown that is no
+/// angle. Then rates and outputs are algebraic on the line and on the circle, or made of exponentials, logarithms, roots and arcs besides,
+/// whose sets have finitely many components (A. Wilkie, *Model completeness results for expansions of the ordered field of real numbers by
+/// restricted Pfaffian functions and the exponential function*, J. Amer. Math. Soc. 9, 1996). With `x' = sin(k)` all `k + 2*pi*n` are values of `k`.
+fn has_finite_fibres(system: &System, question: &SolutionsQuestion) -> bool {
+    let mut graph = system.graph.clone();
+    let Driven { rates, .. } = driven(system, &mut graph);
+    let mut roots: Vec<NodeId> = rates.into_iter().map(|(_, rate)| rate).collect();
+    roots.extend(system.outputs.iter().map(|(_, node)| *node));
+    roots.extend(expressions(question));
+    let fixed = told_constants(system, &graph, &question.conditions);
+    let roots = graph.substitute(&roots, &fixed);
+    let roots = expand_angles(&mut graph, &roots, |symbol| system.is_angle(symbol));
+    let unknowns = system.unknowns();
+    // an angle that is a number too is none
+    let (mut turned, mut bare, mut has_other) = (HashSet::new(), HashSet::new(), false);
+    let (mut waiting, mut met) = (roots, HashSet::new());
+    while let Some(node) = waiting.pop().filter(|_| !has_other) {
+        if !met.insert(node) {
+            continue;
+        }
+        match graph.node(node) {
+            Node::Apply(Function::Sin | Function::Cos, argument) => match graph.node(argument) {
+                Node::Symbol(symbol) if system.is_angle(symbol) => {
+                    turned.insert(symbol);
+                }
+                _ => has_other = graph.symbols_of([argument]).iter().any(|symbol| unknowns.contains(symbol)),
+            },
+            Node::Symbol(symbol) if system.is_angle(symbol) => {
+                bare.insert(symbol);
+            }
+            other => waiting.extend(other.operands()),
+        }
+    }
+    !has_other && turned.is_disjoint(&bare)
 }
 
 fn expressions(question: &SolutionsQuestion) -> Vec<NodeId> {

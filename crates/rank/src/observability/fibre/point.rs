@@ -144,7 +144,7 @@ impl Fibre {
                 _ => Some(jet + numbering.stride()),
             }
         };
-        let mut values: HashMap<u32, u64> = begin(model, field, source)?;
+        let mut values: HashMap<u32, u64> = random_point(model, field, source)?;
         // derivatives of drives are anything
         for (variable, order) in needed.iter().enumerate() {
             if let (Motion::Driven, Some(order)) = (&model.variables[variable].motion, order) {
@@ -331,7 +331,11 @@ fn elsewhere(model: &Model, orders: &Orders, field: &PrimeField, source: &mut So
 }
 
 /// Random initial conditions, or those that the file gives.
-fn begin(model: &Model, field: PrimeField, source: &mut Source) -> Result<HashMap<u32, u64>, Trouble> {
+pub(super) fn random_point(
+    model: &Model,
+    field: PrimeField,
+    source: &mut Source,
+) -> Result<HashMap<u32, u64>, Trouble> {
     let mut values = HashMap::new();
     for (place, variable) in model.variables.iter().enumerate() {
         match variable.input {
