@@ -515,3 +515,38 @@ fn what_knows_no_ties_refuses_them() {
     let reduced = json(&palmistry(&["reduce", file, "--json"]));
     assert!(reduced["rank"].is_null(), "{reduced}");
 }
+
+/// `u x - y = 0` also holds at `x = y = 0`, whatever `u` is there: where motions stay there, a proof names that part; with the rows `(u, -1)` and `(u', 0)` the
+/// rank there is two, and not one. Where the motion leaves it at once, or it is assumed away, there is none.
+#[test]
+fn a_part_on_which_a_signal_is_free_is_named() {
+    let named = |text: &str| -> Vec<String> {
+        let file = format!("system \"s\" state x, y param k unknown known u(t) {text}");
+        let outcomes = palmistry::prove(&file.parse::<System>().unwrap());
+        assert!(outcomes.iter().all(|outcome| outcome.ok), "{text}: {outcomes:?}");
+        outcomes.into_iter().flat_map(|outcome| outcome.not_looked_at).collect()
+    };
+    let there = "claim 1: rank <= 2 claim 2: unobservable(x) claim 3 expect refuted: rank = 3";
+    assert_eq!(
+        named(&format!("drift f others' = 0 output 0 = u*x - y output k {there}")),
+        ["x = 0", "x = 0"]
+    );
+    assert_eq!(
+        named(&format!("assume x > 0 drift f others' = 0 output 0 = u*x - y output k {there}")),
+        [""; 0]
+    );
+    assert_eq!(
+        named(&format!("assume x^2 + y^2 > 0 drift f others' = 0 output 0 = u*x - y output k {there}")),
+        [""; 0]
+    );
+    assert_eq!(named("drift f others' = 0 output 0 = (1 + x^2)*u - y output k claim 1: rank = 3"), [""; 0]);
+    // `x` leaves zero at once, and `k` where both are
+    assert_eq!(named("drift f x' = 1 y' = k output 0 = u*x - y claim 1: rank = 3"), [""; 0]);
+    assert_eq!(named("drift f x' = k y' = x + 1 output 0 = u*x - y claim 1: rank = 3"), [""; 0]);
+    assert_eq!(named("drift f x' = k*x y' = x output 0 = u*x - y claim 1: unobservable(x)"), ["x = 0"]);
+    // the other rows, at a state of that part
+    let rows = "system \"s\" state x, y, u, w claim 1: rank([u, -1; w, 0]) = 2 where x = 0, y = 0, w != 0"
+        .parse::<System>()
+        .unwrap();
+    assert!(palmistry::prove(&rows).iter().all(|outcome| outcome.ok));
+}

@@ -407,10 +407,12 @@ fn attempt(
         Err(why) => return Err(why.to_string()),
     };
     let mut solution = solution;
+    let mut signals_free = Vec::new();
     if of_rank {
         for branch in solution.parts.iter_mut().chain(&mut solution.smaller) {
             let tied = std::mem::take(branch).tied_by_outputs(system);
             *branch = tied.map_err(|why| why.to_string())?;
+            signals_free.extend(branch.beside.iter().map(|slope| format!("{slope} = 0")));
         }
         conditions.extend(system.zero_outputs());
     }
@@ -429,7 +431,8 @@ fn attempt(
         let verdict = together(&question, decided.found);
         if matches!(verdict, Verdict::Proved { .. }) {
             let left_out = decided.unsolved.iter();
-            notes.not_looked_at.extend(left_out.cloned());
+            notes.not_looked_at.extend(left_out.cloned().chain(signals_free));
+            notes.not_looked_at.dedup();
         }
         return Ok(verdict);
     }

@@ -2,9 +2,12 @@
 //! ... at points where all of these vanish.
 //!
 //! Each `y^(j) = 0` is solved for a coordinate in which it is linear. For `j > 0` it is so in the highest derivative of a
-//! signal, with the slope that `y` itself has; where that slope does not vanish (at almost all points of a set that has one part)
-//! the derivatives of the signal are given by the rest, one after the other. No branch is followed on which it does vanish: a rank is
-//! that at almost all points. So many derivatives are taken as the rows mention of the signals.
+//! signal, with the slope that `y` itself has; where that slope does not vanish the derivatives of the signal are given by the rest, one after the
+//! other. So many derivatives are taken as the rows mention of the signals.
+//!
+//! Where the slope and the equation both vanish, as those of `u x - y` at `x = y = 0`, the signal is free: if a motion stays there, that is a part of its own,
+//! however thin it is among all states. Nothing is said of it, and [`Branch::beside`] names it, unless it is seen that no motion stays there: what
+//! is left at once is the limit of states at which the slope does not vanish.
 //!
 //! The last of them has to be solved for the highest derivative of a signal that it mentions: then there are signals with these derivatives which
 //! keep `y` zero for a while, by the theorem on implicit functions. Where its slope vanishes on all of the branch, as that of `u x - y` where `x = 0`,
@@ -12,13 +15,16 @@
 //! There nothing is said.
 
 use super::single::{also_met_otherwise, linear_solution};
-use super::{Branch, Unsolved, is_a_constant_but_zero, quote, vanishes};
+use super::{Branch, Unsolved, is_a_constant_but_zero, quote, shortened, vanishes};
 use palmistry_lang::{Assignment, System};
-use palmistry_math::expression::{Guard, Need, NodeId, Symbol, add_guard};
+use palmistry_math::expression::{Guard, Need, NodeId, Symbol, add_guard, sign};
 
 /// Equations of no more operations are differentiated beyond what the rows mention, and no oftener than this.
 const SHORT: usize = 2000;
 const MOST_MORE: usize = 8;
+/// So many derivatives are asked to vanish where a slope does, as long as they have no more operations.
+const MOST_DERIVATIVES_BESIDE: usize = 4;
+const SHORT_BESIDE: usize = 100;
 
 /// A derivative of an output that is zero, the last one so far.
 struct Tied {
@@ -42,6 +48,8 @@ impl Branch {
         if outputs.is_empty() {
             return Ok(self);
         }
+        let before = self.clone();
+        let mut equations: Vec<NodeId> = Vec::new();
         for node in &outputs {
             let zero = system.graph.integer(0);
             self.steps.push(quote(system, zero, *node));
@@ -57,7 +65,16 @@ impl Branch {
         let mut order = 0;
         loop {
             for tied in current.iter_mut().filter(|tied| !tied.is_last) {
+                let was_signal = tied.solved.is_some_and(|symbol| system.known.contains(&symbol));
                 tied.solved = self.meet(system, tied.node, order, tied.solved)?;
+                equations.push(tied.node);
+                let signal = tied.solved.filter(|symbol| system.known.contains(symbol) && !was_signal);
+                if let Some(signal) = signal {
+                    let slope = system.partial(tied.node, signal);
+                    if !before.leaves_none_beside(system, slope, &equations) {
+                        self.beside.push(shortened(system.graph.text(slope)));
+                    }
+                }
                 let mentioned = system.graph.symbols_of([tied.node]);
                 // symbols for more derivatives, for which there are no rows, are given too as long as that costs little: the set is then invariant
                 let is_long = || system.graph.reachable([tied.node]).len() > SHORT;
@@ -77,6 +94,30 @@ impl Branch {
             }
         }
         Ok(self)
+    }
+
+    /// Whether it is seen that no motion stays where the slope of a signal vanishes beside the equations that were met so far: all their derivatives
+    /// would vanish too.
+    fn leaves_none_beside(&self, system: &mut System, slope: NodeId, equations: &[NodeId]) -> bool {
+        let there = system.graph.substitute(&[slope], &self.values)[0];
+        let needs = |guard: &Guard| guard.node == there && guard.need != Need::NotNegative;
+        if sign(&system.graph, there).is_some_and(|sign| sign.is_strict()) || self.guards.iter().any(needs) {
+            return true;
+        }
+        let mut last: Vec<NodeId> = std::iter::once(slope).chain(equations.last().copied()).collect();
+        let mut all: Vec<NodeId> = std::iter::once(slope).chain(equations.iter().copied()).collect();
+        for _ in 0..=MOST_DERIVATIVES_BESIDE {
+            if system.graph.reachable(last.clone()).len() > SHORT_BESIDE {
+                return false;
+            }
+            if self.meeting(system, &all).is_err_and(|why| !why.may_be_met()) {
+                return true;
+            }
+            let Some(drift) = system.drift() else { return false };
+            last = last.into_iter().map(|node| system.lie_derivative(drift, node)).collect();
+            all.extend(&last);
+        }
+        false
     }
 
     /// Whether the last derivative of an output gives the highest derivative of a signal that it mentions, so that there are signals for any values of the others;

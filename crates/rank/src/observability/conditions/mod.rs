@@ -46,6 +46,8 @@ pub struct Branch {
     pub assumed: Vec<Guard>,
     /// How each condition was met, in words.
     pub steps: Vec<String>,
+    /// What does not vanish on it, in words: elsewhere an output that is zero leaves a signal free, which may be a part of its own.
+    pub beside: Vec<String>,
 }
 
 /// The set of states that meet some conditions.
@@ -65,7 +67,8 @@ impl Branch {
     /// What holds on it: how its conditions were solved, and what was assumed of the rest.
     pub fn in_words(&self, system: &System) -> Vec<String> {
         let assumed = self.assumed.iter().map(|guard| guard.text(&system.graph));
-        self.steps.iter().cloned().chain(assumed).collect()
+        let given = self.beside.iter().map(|slope| format!("{slope} != 0"));
+        self.steps.iter().cloned().chain(assumed).chain(given).collect()
     }
 }
 
@@ -292,11 +295,14 @@ pub fn assumed(graph: &mut Graph, relation: Relation, left: NodeId, right: NodeI
 }
 
 fn quote(system: &System, left: NodeId, right: NodeId) -> String {
-    let mut text = format!("{} = {}", system.graph.text(left), system.graph.text(right));
-    if text.chars().count() > LONGEST_QUOTE {
-        text = text.chars().take(LONGEST_QUOTE).chain("...".chars()).collect();
+    shortened(format!("{} = {}", system.graph.text(left), system.graph.text(right)))
+}
+
+fn shortened(text: String) -> String {
+    match text.chars().count() > LONGEST_QUOTE {
+        true => text.chars().take(LONGEST_QUOTE).chain("...".chars()).collect(),
+        false => text,
     }
-    text
 }
 
 impl Partial {
@@ -503,5 +509,6 @@ fn finish(system: &mut System, partial: Partial) -> Branch {
         guards: partial.guards,
         assumed: partial.assumed,
         steps: partial.steps,
+        beside: Vec::new(),
     }
 }
