@@ -539,7 +539,7 @@ fn a_part_on_which_a_signal_is_free_is_named() {
         named(&format!("assume x^2 + y^2 > 0 drift f others' = 0 output 0 = u*x - y output k {there}")),
         [""; 0]
     );
-    assert_eq!(named("drift f others' = 0 output 0 = (1 + x^2)*u - y output k claim 1: rank = 3"), [""; 0]);
+    assert_eq!(named("drift f others' = 0 output 0 = (1 + x^2)*u - y output k claim 1: rank = 2"), [""; 0]);
     // `x` leaves zero at once, and `k` where both are
     assert_eq!(named("drift f x' = 1 y' = k output 0 = u*x - y claim 1: rank = 3"), [""; 0]);
     assert_eq!(named("drift f x' = k y' = x + 1 output 0 = u*x - y claim 1: rank = 3"), [""; 0]);
