@@ -157,8 +157,12 @@ pub fn region_text(answer: &RegionAnswer) -> String {
         let _ = writeln!(out, "  nothing depends on {}", names(false).join(", "));
     }
     let all = if answer.all_minors { "all" } else { "more than" };
-    let _ =
-        writeln!(out, "{}, chosen from {all} {}:", counted(answer.minors.len(), "minor"), answer.candidates);
+    let _ = writeln!(
+        out,
+        "{}, chosen from {all} {}; zeros where the rows are defined:",
+        counted(answer.minors.len(), "minor"),
+        answer.candidates
+    );
     for minor in &answer.minors {
         let _ = writeln!(out, "  {}", minor.rows.join(", "));
         for factor in &minor.factors {
