@@ -544,6 +544,11 @@ fn a_part_on_which_a_signal_is_free_is_named() {
     assert_eq!(named("drift f x' = 1 y' = k output 0 = u*x - y claim 1: rank = 3"), [""; 0]);
     assert_eq!(named("drift f x' = k y' = x + 1 output 0 = u*x - y claim 1: rank = 3"), [""; 0]);
     assert_eq!(named("drift f x' = k*x y' = x output 0 = u*x - y claim 1: unobservable(x)"), ["x = 0"]);
+    // without a signal: `z (b x + a) = 0` is the second equation, and where `z = 0` the output sees z and not x
+    let two = "state z, a, b drift f x' = a y' = 0 z' = b*z a' = -a*b b' = 0 output 0 = z*x - y output a claim 1: observable(x)";
+    assert_eq!(named(two), ["z = 0"]);
+    // one equation at rest is one part, whatever it is solved for
+    assert_eq!(named("state z drift f others' = 0 output 0 = z*x - y output k claim 1: rank = 2"), [""; 0]);
     // the other rows, at a state of that part
     let rows = "system \"s\" state x, y, u, w claim 1: rank([u, -1; w, 0]) = 2 where x = 0, y = 0, w != 0"
         .parse::<System>()

@@ -49,7 +49,8 @@ impl Branch {
             return Ok(self);
         }
         let before = self.clone();
-        let mut equations: Vec<NodeId> = Vec::new();
+        let (mut equations, mut slopes): (Vec<NodeId>, Vec<(NodeId, Vec<NodeId>)>) = (Vec::new(), Vec::new());
+        let mut gives_signals = false;
         for node in &outputs {
             let zero = system.graph.integer(0);
             self.steps.push(quote(system, zero, *node));
@@ -65,15 +66,19 @@ impl Branch {
         let mut order = 0;
         loop {
             for tied in current.iter_mut().filter(|tied| !tied.is_last) {
-                let was_signal = tied.solved.is_some_and(|symbol| system.known.contains(&symbol));
-                tied.solved = self.meet(system, tied.node, order, tied.solved)?;
-                equations.push(tied.node);
-                let signal = tied.solved.filter(|symbol| system.known.contains(symbol) && !was_signal);
-                if let Some(signal) = signal {
-                    let slope = system.partial(tied.node, signal);
-                    if !before.leaves_none_beside(system, slope, &equations) {
-                        self.beside.push(shortened(system.graph.text(slope)));
-                    }
+                let before_it = tied.solved;
+                let here = system.graph.substitute(&[tied.node], &self.values)[0];
+                tied.solved = self.meet(system, tied.node, order, before_it)?;
+                // one that says nothing more here may cut another part, and would hide it
+                equations.extend(tied.solved.map(|_| tied.node));
+                // the next derivative of a signal has the slope of the one before
+                let is_next = before_it.is_some_and(|signal| system.known.contains(&signal));
+                if let Some(symbol) = tied.solved.filter(|_| !is_next) {
+                    let is_signal = system.known.contains(&symbol);
+                    // what was solved before does not mention a signal's highest derivative
+                    let slope = system.partial(if is_signal { tied.node } else { here }, symbol);
+                    slopes.push((slope, equations.clone()));
+                    gives_signals |= is_signal;
                 }
                 let mentioned = system.graph.symbols_of([tied.node]);
                 // symbols for more derivatives, for which there are no rows, are given too as long as that costs little: the set is then invariant
@@ -86,6 +91,18 @@ impl Branch {
                 tied.node = system.lie_derivative(drift, tied.node);
             }
             order += 1;
+        }
+        // derivatives of signals are given without end; without them a thinner part is the limit of others
+        let thinner = if gives_signals { None } else { Some(self.values.len()) };
+        let mut apart = before;
+        for (slope, then) in slopes {
+            let is_none = apart.leaves_none_beside(system, slope, &then)
+                || thinner.is_some_and(|most| apart.is_thinner_beside(system, slope, &equations, most));
+            if !is_none {
+                self.beside.push(shortened(system.graph.text(slope)));
+            }
+            // where it vanishes the next one need not be looked at
+            add_guard(&system.graph, &mut apart.guards, Guard { node: slope, need: Need::NotZero });
         }
         for (tied, output) in current.iter().zip(outputs) {
             if !self.gives_the_last(system, tied) {
@@ -118,6 +135,28 @@ impl Branch {
             all.extend(&last);
         }
         false
+    }
+
+    /// Whether the part on which a slope vanishes beside all equations has more coordinates solved for than so many: each part of its own that
+    /// equations have is at least as large as their number says.
+    fn is_thinner_beside(
+        &self,
+        system: &mut System,
+        slope: NodeId,
+        equations: &[NodeId],
+        most: usize,
+    ) -> bool {
+        let all: Vec<NodeId> = std::iter::once(slope).chain(equations.iter().copied()).collect();
+        if system.graph.reachable(all.clone()).len() > SHORT_BESIDE {
+            return false;
+        }
+        match self.meeting(system, &all) {
+            Err(why) => !why.may_be_met(),
+            Ok(solution) => {
+                let mut solved = solution.parts.iter().chain(&solution.smaller).chain(&solution.thinner);
+                solution.unsolved.is_empty() && solved.all(|branch| branch.values.len() > most)
+            }
+        }
     }
 
     /// Whether the last derivative of an output gives the highest derivative of a signal that it mentions, so that there are signals for any values of the others;
