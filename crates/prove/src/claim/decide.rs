@@ -430,9 +430,12 @@ fn attempt(
         notes.evidence.extend(decided.evidence);
         let verdict = together(&question, decided.found);
         if matches!(verdict, Verdict::Proved { .. }) {
-            let left_out = decided.unsolved.iter();
-            notes.not_looked_at.extend(left_out.cloned().chain(signals_free));
-            notes.not_looked_at.dedup();
+            // branches may leave out the same
+            for part in decided.unsolved.iter().chain(&signals_free) {
+                if !notes.not_looked_at.contains(part) {
+                    notes.not_looked_at.push(part.clone());
+                }
+            }
         }
         return Ok(verdict);
     }

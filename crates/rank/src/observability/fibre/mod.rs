@@ -121,7 +121,7 @@ pub struct SolutionsAnswer {
     pub second: Option<SecondPoint>,
     /// Whether initial conditions are given, so that further derivatives might be informative.
     pub orders_are_open: bool,
-    /// Whether what is observable locally has finitely many values: see [`has_finite_fibres`].
+    /// Whether what is observable locally has finitely many values: where no sine or cosine is taken of an unknown that is no angle.
     pub is_finite_where_local: bool,
 }
 
