@@ -140,3 +140,29 @@ fn an_empty_set_has_no_rank() {
         assert_eq!(found.as_ref().ok().copied(), rank, "{conditions}: {found:?}");
     }
 }
+
+/// A root is zero where its radicand is, also where signs divide the claim into parts: by hand, at the edge. Each of the first was proved, with the root
+/// as a power, which does not exist at zero.
+#[test]
+fn roots_are_zero_at_the_ends_of_their_domains() {
+    for (claim, expected) in [
+        ("sqrt(x) + abs(y) > 0", "refuted"),
+        ("sqrt(x) + abs(y) > 0 where y = 0", "refuted"),
+        ("sqrt(abs(y)) != 0", "refuted"),
+        ("sqrt(abs(y)) = 0 where y = 0", "proved"),
+        ("sqrt(x)*(2 + abs(y)) > 0", "refuted"),
+        ("min(sqrt(x), 1) > 0", "refuted"),
+        ("max(sqrt(x), y) > 0", "refuted"),
+        ("sqrt(max(y, z)) > 0", "refuted"),
+        ("abs(y)^(3/2) > 0", "refuted"),
+        ("1/(1 + sqrt(abs(y))) < 1", "refuted"),
+        ("sqrt(abs(y)) > 0 where -1 <= y <= 1", "refuted"),
+        ("k*sqrt(x) + abs(y) > 0 where k > 0", "refuted"),
+        ("sqrt(x) + abs(y) >= 0", "proved"),
+        ("sqrt(x) + abs(y) + 1 > 0", "proved"),
+        ("sqrt(x^2)*abs(y) = abs(x*y)", "proved"),
+    ] {
+        let found = outcome(claim);
+        assert_eq!(found.word(), expected, "{claim}: {:?}", found.verdict);
+    }
+}

@@ -44,6 +44,25 @@ fn sets_and_proofs(
     (answer.designs.iter().map(in_words).collect(), proved)
 }
 
+/// What can be added under two names is added once, and takes no rows of others: by hand.
+#[test]
+fn the_same_addition_twice() {
+    let product = "state x param a, b, c unknown drift f x' = -a*x output b*c*x";
+    let measure = |expressions: &[&str], question: &mut DesignQuestion<'_>| {
+        question.measurable = Some(expressions.iter().map(|one| (*one).to_owned()).collect());
+        question.kinds = vec![AdditionKind::Outputs, AdditionKind::Known];
+        question.at_most = 2;
+    };
+    let found = sets(product, &["x"], |question| measure(&["a"], question));
+    assert_eq!(found, ["known b, known c"]);
+    let apart = "state x, y param c unknown drift f x' = -x y' = 0*x + 1 output x";
+    let found = sets(apart, &["y"], |question| measure(&["c*x", "x*c", "y"], question));
+    assert_eq!(found, ["output y"]);
+    // measured already
+    let found = sets(apart, &["y"], |question| measure(&["2*x - x", "c*x", "y"], question));
+    assert_eq!(found, ["output y"]);
+}
+
 const TWO: &str = "state x, y param a, b, c unknown drift f x' = -(a + b)*x + c*y y' = a*x - c*y output x";
 
 /// By hand.

@@ -76,7 +76,11 @@ impl System {
             let [Ok((left, _)), Ok((right, _))] = sides else { continue };
             let values = self.graph.substitute(&[left, right], &defaults);
             let difference = self.graph.sub(values[0], values[1]);
-            if self.graph.constant_value(difference).is_some_and(|value| !holds(one.relation, value)) {
+            if self
+                .graph
+                .constant_value(difference)
+                .is_some_and(|value| !one.relation.holds(value.cmp(&RBig::ZERO)))
+            {
                 let text = in_one_line(&self.source, &one.span);
                 let message = format!("the values that the file gives do not meet {text}");
                 let problem = Problem::new(Code::Assumption, &one.span, message, "not met");
@@ -145,17 +149,5 @@ impl Bounds {
     fn is_empty(&self) -> bool {
         let ends = self.low.as_ref().zip(self.high.as_ref());
         ends.is_some_and(|(low, high)| low.0 > high.0 || low.0 == high.0 && (low.1 || high.1))
-    }
-}
-
-fn holds(relation: Relation, difference: &RBig) -> bool {
-    let sign = difference.cmp(&RBig::ZERO);
-    match relation {
-        Relation::Equal => sign.is_eq(),
-        Relation::NotEqual => sign.is_ne(),
-        Relation::Less => sign.is_lt(),
-        Relation::AtMost => sign.is_le(),
-        Relation::Greater => sign.is_gt(),
-        Relation::AtLeast => sign.is_ge(),
     }
 }

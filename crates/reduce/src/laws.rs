@@ -49,6 +49,20 @@ impl Law {
         let own = graph.rational(self.own.clone());
         graph.div(value, own)
     }
+
+    /// The ends of what the total can be where each state lies in its range; nothing where one has none.
+    pub fn range_of_the_total(&self, system: &System) -> Option<[RBig; 2]> {
+        let mut ends = [RBig::ZERO, RBig::ZERO];
+        let own = (self.state, self.own.clone());
+        for (state, factor) in std::iter::once(&own).chain(&self.others) {
+            let range = system.symbol_info(*state)?.range.as_ref()?;
+            let (low, high) = (factor * &range.low, factor * &range.high);
+            let (low, high) = if low > high { (high, low) } else { (low, high) };
+            ends[0] += low;
+            ends[1] += high;
+        }
+        Some(ends)
+    }
 }
 
 /// The states of a system that move, and their rates along each field. What the others may give comes last.

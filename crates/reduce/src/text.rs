@@ -4,13 +4,18 @@ use super::flows::Flow;
 use super::names::{Names, TOO_LONG};
 use super::question::NotReduced;
 use super::remaining::{LeftOutState, Remaining, WhyLeftOut};
-use palmistry_lang::Kind;
+use dashu::rational::RBig;
+use palmistry_lang::{Assignment, Kind, parse_statement};
+use palmistry_math::expression::syntax::Equation;
 use palmistry_math::expression::{Node, NodeId, Symbol};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fmt::Write;
 
 /// The name under which the larger system is imported.
 const LARGER: &str = "larger";
+
+/// Assumptions that are longer with what is put in are left out, in bytes.
+const LONGEST_ASSUMPTION: usize = 2000;
 
 pub(crate) fn text(remaining: &mut Remaining, import: &str) -> Result<String, NotReduced> {
     if remaining.output_nodes().next().is_none() && remaining.further_outputs.is_empty() {
@@ -20,6 +25,7 @@ pub(crate) fn text(remaining: &mut Remaining, import: &str) -> Result<String, No
     let mut out = String::new();
     head(&mut out, remaining, import);
     declarations(&mut out, remaining);
+    assumptions(&mut out, remaining)?;
     if !names.definitions.is_empty() {
         out.push('\n');
     }
@@ -175,13 +181,74 @@ fn declarations(out: &mut String, remaining: &Remaining) {
     if !angles.is_empty() {
         let _ = writeln!(out, "angle {}", angles.join(", "));
     }
-    let declared: HashSet<&str> =
-        remaining.states.iter().chain(&mentioned).map(|one| remaining.system.symbol_name(*one)).collect();
+}
+
+/// The assumptions of the larger system, with what the conditions and the conserved amounts give put in. One about what is left out altogether restricts nothing that
+/// is written here, and is named.
+fn assumptions(out: &mut String, remaining: &mut Remaining) -> Result<(), NotReduced> {
+    let declared: HashSet<Symbol> = remaining.states.iter().copied().chain(mentioned(remaining)).collect();
+    let values = values_of_what_is_left_out(remaining);
     for assumed in remaining.system.assumptions() {
-        if names_in(&assumed).all(|name| declared.contains(name)) {
-            let _ = writeln!(out, "assume {assumed}");
+        let not_read = || NotReduced::Kind { why: format!("the assumption {assumed} cannot be read") };
+        let statement = parse_statement(&format!("0 = 0 where {assumed}")).map_err(|_| not_read())?;
+        let mut parts = Vec::new();
+        let (mut changes, mut is_whole) = (false, true);
+        for Equation { left, relation, right, .. } in &statement.conditions {
+            let mut side = |expr| remaining.system.elaborate(expr).ok()?.as_number();
+            let (left, right) = (side(left).ok_or_else(not_read)?, side(right).ok_or_else(not_read)?);
+            let there = match remaining.system.graph.vanishing_divisor(&[left, right], &values) {
+                Some(_) => None,
+                None => Some(remaining.system.graph.substitute(&[left, right], &values)),
+            };
+            let Some(&[new_left, new_right]) = there.as_deref() else {
+                is_whole = false;
+                continue;
+            };
+            let graph = &mut remaining.system.graph;
+            let difference = graph.sub(new_left, new_right);
+            if let Some(number) = graph.constant_value(difference) {
+                let holds = relation.holds(number.cmp(&RBig::ZERO));
+                if !holds {
+                    let why = format!("the conditions contradict the assumption {assumed}");
+                    return Err(NotReduced::Kind { why });
+                }
+                changes = true;
+                continue;
+            }
+            changes |= (left, right) != (new_left, new_right);
+            is_whole &= graph.symbols_of([new_left, new_right]).iter().all(|one| declared.contains(one));
+            let [left, right] = [new_left, new_right].map(|side| graph.text(side));
+            is_whole &= left.len() + right.len() < LONGEST_ASSUMPTION;
+            parts.push(format!("{left} {} {right}", relation.sign()));
+        }
+        match (is_whole, changes, parts.is_empty()) {
+            (true, false, _) => {
+                let _ = writeln!(out, "assume {assumed}");
+            }
+            (true, true, false) => {
+                let _ = writeln!(out, "assume {}", parts.join(", "));
+            }
+            (true, true, true) => {}
+            (false, ..) => {
+                let _ = writeln!(
+                    out,
+                    "# not assumed here, as it is about what is left out: {}",
+                    one_line(&assumed)
+                );
+            }
         }
     }
+    Ok(())
+}
+
+/// What is written in the place of states and constants that are left out.
+fn values_of_what_is_left_out(remaining: &mut Remaining) -> Assignment {
+    let mut values = remaining.values.clone();
+    for law in &remaining.laws {
+        let given = law.given(&mut remaining.system.graph);
+        values.insert(law.state, given);
+    }
+    values
 }
 
 /// Writes the states of a list, where there are some, and empties it.
@@ -189,12 +256,6 @@ fn lines_of_states(out: &mut String, list: &mut Vec<String>) {
     if !list.is_empty() {
         let _ = writeln!(out, "state {}", std::mem::take(list).join(", "));
     }
-}
-
-/// The names in a formula; those of functions are none that stand alone.
-fn names_in(text: &str) -> impl Iterator<Item = &str> {
-    text.split(|c: char| !(c.is_alphanumeric() || "_'[]".contains(c)))
-        .filter(|word| word.starts_with(|c: char| c.is_alphabetic() || c == '_'))
 }
 
 /// The symbols of all formulas of the smaller system, and the constants that have become parameters.
@@ -273,11 +334,12 @@ fn sample(out: &mut String, remaining: &mut Remaining, names: &Names) {
             lines.push(format!("{name} in [{}, {}]", range.low, range.high));
         }
     }
-    let mut values = remaining.values.clone();
     for law in &remaining.laws {
-        let given = law.given(&mut remaining.system.graph);
-        values.insert(law.state, given);
+        if let Some([low, high]) = law.range_of_the_total(&remaining.system) {
+            lines.push(format!("{} in [{low}, {high}]", remaining.system.symbol_name(law.total)));
+        }
     }
+    let values = values_of_what_is_left_out(remaining);
     let mut avoided = Vec::new();
     for (_, node) in remaining.system.avoid.clone() {
         if remaining.system.graph.vanishing_divisor(&[node], &values).is_some() {

@@ -339,3 +339,32 @@ fn the_thesis_s_regimes_are_found() {
         assert_eq!(answer.rank(), Some(rank), "{}", found.text);
     }
 }
+
+/// Assumptions stay as they are, functions in them too; what is left out is put in, and what says nothing of the rest is named.
+#[test]
+fn assumptions_are_carried_over() {
+    let functions = "system \"s\" state x, z param k unknown assume exp(x) > 2, abs(k) < 3, k > 1 drift f x' = -k*x z' = x output x";
+    let (_, small) = least(functions, &ReduceQuestion::default()).unwrap();
+    assert_eq!(small.assumptions(), ["exp(x) > 2", "abs(k) < 3", "k > 1"]);
+    // by hand: y = total - x, between 2 and 4
+    let conserved = "system \"s\" state x, y param b unknown assume y > 0 drift f x' = -b*x*max(y, 0) y' = b*x*max(y, 0) output max(y, 0), x sample x in [1, 2] y in [1, 2]";
+    let (found, small) = least(conserved, &ReduceQuestion::default()).unwrap();
+    assert_eq!(names(&found), [("y", "conserved")]);
+    let [assumed] = &small.assumptions()[..] else { panic!("{}", found.text) };
+    assert!(assumed.ends_with("- x > 0"), "{assumed}");
+    let total = small.states.iter().find(|state| small.symbol_name(**state).starts_with("total"));
+    let range = small.symbol_info(*total.unwrap()).unwrap().range.clone().unwrap();
+    assert_eq!((range.low, range.high), (2.into(), 4.into()));
+    let equal =
+        "system \"s\" state x, y param b unknown assume y > 0 drift f x' = -b*x y' = -b*y output x, y";
+    let fixed = |condition: &str| least(equal, &question(&[condition], &[], &[]));
+    assert_eq!(fixed("y = x").map(|(_, small)| small.assumptions()).unwrap(), ["x > 0"]);
+    let contradicted = fixed("y = 0");
+    assert!(
+        matches!(&contradicted, Err(NotReduced::Kind { why }) if why.contains("contradict")),
+        "{contradicted:?}"
+    );
+    let apart = "system \"s\" state x, z assume z > x drift f x' = -x z' = 1 output x";
+    let (found, small) = least(apart, &ReduceQuestion::default()).unwrap();
+    assert!(small.assumptions().is_empty() && found.text.contains("not assumed here"), "{}", found.text);
+}

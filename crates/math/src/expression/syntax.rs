@@ -2,6 +2,7 @@
 //! stands, so that an error can point there.
 
 use dashu::rational::RBig;
+use std::cmp::Ordering;
 use std::ops::Range;
 
 /// Where in the text: from byte to byte.
@@ -128,6 +129,18 @@ impl Relation {
             Relation::Greater => Relation::Less,
             Relation::AtLeast => Relation::AtMost,
             same => same,
+        }
+    }
+
+    /// Whether it holds of sides that compare so.
+    pub fn holds(self, order: Ordering) -> bool {
+        match self {
+            Relation::Equal => order.is_eq(),
+            Relation::NotEqual => order.is_ne(),
+            Relation::Less => order.is_lt(),
+            Relation::AtMost => order.is_le(),
+            Relation::Greater => order.is_gt(),
+            Relation::AtLeast => order.is_ge(),
         }
     }
 

@@ -400,14 +400,7 @@ fn fails(values: &Values, relation: Relation, left: usize, right: usize) -> bool
             }
         }
     };
-    order.is_some_and(|order| match relation {
-        Relation::Equal => order.is_ne(),
-        Relation::NotEqual => order.is_eq(),
-        Relation::Less => order.is_ge(),
-        Relation::AtMost => order.is_gt(),
-        Relation::Greater => order.is_le(),
-        Relation::AtLeast => order.is_lt(),
-    })
+    order.is_some_and(|order| !relation.holds(order))
 }
 
 impl OnBranch {

@@ -116,7 +116,37 @@ impl<'a> Search<'a> {
         if experiment.is_empty() {
             self.additions.experiments = 0;
         }
+        self.additions.rows = self.without_repetitions(&mut left_out);
         self.left_out = left_out;
+    }
+
+    /// What can be measured or known, each once: equal outputs are one when a file is read, and which rows are whose is told by their number.
+    fn without_repetitions(&self, left_out: &mut Vec<(Addition, String)>) -> Vec<Addition> {
+        let outputs = |additions: &[Addition]| {
+            with(self.system, self.question, additions).map_or(0, |system| system.outputs.len())
+        };
+        let is_measured = |one: &Addition| matches!(one, Addition::Output(_) | Addition::Known(_));
+        let measured: Vec<Addition> =
+            self.additions.rows.iter().filter(|one| is_measured(one)).cloned().collect();
+        if outputs(&measured) == outputs(&[]) + measured.len() {
+            return self.additions.rows.clone();
+        }
+        let (mut before, mut count) = (Vec::new(), outputs(&[]));
+        let mut kept = Vec::new();
+        for one in &self.additions.rows {
+            if is_measured(one) {
+                before.push(one.clone());
+                if outputs(&before) == count {
+                    before.pop();
+                    left_out
+                        .push((one.clone(), "it is measured, or can be added under another name".to_owned()));
+                    continue;
+                }
+                count += 1;
+            }
+            kept.push(one.clone());
+        }
+        kept
     }
 
     /// All sets of a size that suffice and contain no smaller one, of those that `is_enough` accepts.

@@ -123,10 +123,11 @@ impl Adjunction<'_> {
         Some(self.graph.substitute(images, &values))
     }
 
-    /// Whether a root of something that varies is a part of a form.
+    /// Whether a root of something that varies is a part of a form: of a symbol, too, which may be zero.
     fn has_root(&self, form: &super::form::Form) -> bool {
         form.variables().into_iter().any(|variable| {
-            matches!(self.generators.key(variable), Key::Root(_) | Key::Abs(_) | Key::Power(..))
+            let key = self.generators.key(variable);
+            matches!(key, Key::Root(_) | Key::Abs(_) | Key::Power(..) | Key::Part(_))
         })
     }
 }
