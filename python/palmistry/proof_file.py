@@ -15,7 +15,10 @@ GREEK = {chr(base + at + (at > 16)): x for at, name in enumerate(LETTERS) for ba
 GREEK |= zip("\u03c2\u03d0\u03d1\u03d5\u03d6\u03f0\u03f1\u03f5\u00b5\u2126\u2206", "sigma beta theta phi pi kappa rho epsilon mu Omega Delta".split())
 ENTRY = re.compile(r"^[ \t]*(?=(?:system|use|state|param|angle|assume|latex|known|unknown|initial|experiments|let|drift|input|field"
                    r"|output|sample|claim|erratum|damaged|scan|convention|loose|definition|undecided|set|singularity|pole|map|line"
-                   r"|reduction)\b)", re.M)
+                   r"|reduction)\b(?!'))", re.M)
+# words that begin what a system is made of, and do not stand within another entry
+WITHIN = re.compile(r"(?<![\w.])(?:system|state|param|assume|initial|experiments|let|drift|input|field|output)\b(?!')")
+NAMED = "claim", "erratum", "damaged", "scan", "convention", "loose"
 LARGEST, MOST_CLAIMS, MOST_NAMES = 16 << 20, 100_000, 2000  # bytes of a proof file; its entries; symbols of one kind
 READ, BYTES = 1000, 8  # what a file takes as work, and what as many bytes take as one node
 
@@ -121,6 +124,10 @@ class System:
             refuse(f"more than {MOST_CLAIMS} entries")
         for entry in found:
             kind, rest = (*entry.split(None, 1), "", "")[:2]
+            bare = without_comments(rest)
+            bare = bare.partition(":")[2] if ":" in bare and kind in NAMED else bare  # a claim may have any name
+            if WITHIN.search(bare) or kind not in ("param", "known", "unknown", "initial") and re.search(r"\b(?:un)?known\b(?!')", bare):
+                refuse("entries that share a line")
             if kind == "use":
                 name, other = re.fullmatch(r'(\w+)\s*=\s*"(.*)"\s*', rest).groups()
                 other = os.path.join(os.path.dirname(path), other) if depth < 8 else refuse("deep imports")
@@ -138,7 +145,7 @@ class System:
                 self.assumed.append(rest)
             elif kind == "output":
                 self.names["output"].append(re.sub(":[^,]*", "", rest))
-            elif kind in ("claim", "erratum", "damaged", "scan", "convention", "loose"):
+            elif kind in NAMED:
                 for name, said in texts(without_comments(entry)).items():
                     self.claims.setdefault(name, said)
             elif kind in ("state", "param", "known", "initial", "unknown", "experiments"):
@@ -181,6 +188,8 @@ class System:
 
     def rate(self, name, kind, bodies):
         moves = kind == "drift" and self.is_signal(name)
+        if name in self.names["state"] and not {name, "others"} & {*bodies} and bodies:
+            refuse("a state without a rate")
         return symbol(name + "'") if moves else single(*self.read(bodies.get(name, "0")))
 
     def bracket(self, *fields):

@@ -4,7 +4,8 @@
 
 From a verdict file (`palmistry prove proofs/ --verdicts FILE`) only witnesses, minors and boxes are taken; the claims that
 they are about are read anew from the proof files (`proof_file`), into a graph of expressions (`graph`). `confirmed`: the
-evidence implies the verdict, or both sides of an equation are one once they are multiplied out. `half confirmed`: one half of it, such as that a rank is no less. `consistent`: nothing speaks
+evidence implies the verdict, or both sides of an equation are one once they are multiplied out, or it is so at random points modulo random primes, with a
+probability of an error below 2^-100. `half confirmed`: one half of it, such as that a rank is no less. `consistent`: nothing speaks
 against it at random points modulo primes. What is not read, or takes too much work, is `not checked`, and why.
 The exit status is 1 where something is not confirmed, and 2 for what is no verdict file.
 """
@@ -12,6 +13,7 @@ The exit status is 1 where something is not confirmed, and 2 for what is no verd
 import json
 import os
 import re
+import secrets
 import sys
 from collections import Counter
 from contextlib import suppress
@@ -19,13 +21,15 @@ from fractions import Fraction
 from math import prod
 from operator import sub
 
+from .bounds import Sizes, is_enough, prime
 from .graph import (MADE, RUN, Expression, Interval, Map, Modulo, Node, Spent, call, derivation, enclosed, forget, number, put_in, refuse,
                     short, spend, symbol)
 from .multiplied import Fields, are_zero, attempt
 from .proof_file import BYTES, HOLDS, System, determinant, each, entries, read_text, spelled
 from .proof_parser import compact, parts
 
-PRIMES = (1 << 61) - 1, (1 << 89) - 1, (1 << 107) - 1
+PRIMES = (1 << 61) - 1, (1 << 89) - 1, (1 << 107) - 1  # by which the same is found each time
+SECRET, SALT = [prime() for _ in range(4)], secrets.token_hex(16)  # and those for which no file can be written
 POINTS, TRIES, WORDS, PIECES, WIDE = 4, 40, 200, 500, 8  # compared; drawn; words; pieces of a box; columns of fields with all coefficients
 MOST, FEE = 1_000_000, 100  # the work on one graph, behind which a new one is begun; of each record, whatever it is
 LARGEST, VALUES, DIGITS = 1 << 28, 1 << 25, 40  # bytes of a verdict file; its values, brackets for eight; digits of a number
@@ -53,15 +57,29 @@ def adds(row, basis, prime):
         basis[column] = [x * pow(row[column], -1, prime) % prime for x in row]
     return column is not None
 
+def unknown_in(gap): return [node for node in gap.below() if node.kind == "symbol" and node is not symbol("pi")]
+
 def solution(system, gap):
     """A symbol in which a gap is linear, or for which it is zero at a quarter turn, and its value."""
-    names, zero = [node for node in gap.below() if node.kind == "symbol"], number(0)
+    names, zero = unknown_in(gap), number(0)
     slopes = [(name, system.unit(name.args[0])[gap]) for name in names]
     for name, slope in sorted(slopes, key=lambda pair: pair[1].kind != "number"):
         if slope is not zero and name not in slope.below():
             return name, -Map(put_in, {name: zero})[gap] / slope
     turns = [(name, turn) for name in names for turn in (zero, number("1/2") * symbol("pi"))]
     return next((x for x in turns if Map(put_in, [x])[gap] is zero), None) or refuse("a condition that is not solved")
+
+def is_solved_wholly(system, conditions):
+    """Whether the equations among some conditions each give a symbol on all of their set: with a slope that is a number."""
+    given = []
+    for gap in [gap for relation in conditions if relation[1] == "=" for gap in gaps(relation)]:
+        for one in given:
+            gap = Map(put_in, [one])[gap]
+        if gap is not number(0):
+            if not any((slope := system.unit(name.args[0])[gap]).kind == "number" and slope is not number(0) for name in unknown_in(gap)):
+                return False
+            given.append(solution(system, gap))
+    return True
 
 def solved(system, conditions):
     """What the equations among some conditions say of symbols: none is met in its own value or in a later one."""
@@ -72,11 +90,11 @@ def solved(system, conditions):
         found += [solution(system, gap)] if gap is not number(0) else []
     return found
 
-def points(given, seed):
+def points(given, seed, primes=PRIMES):
     """Random points modulo primes on the set of the equations; inequalities hold somewhere, and do not matter."""
     orders = {}
     for draw in range(TRIES):
-        point = Modulo(PRIMES[draw % len(PRIMES)], (seed, draw), orders)
+        point = Modulo(primes[draw % len(primes)], (seed, draw), orders)
         with suppress(ZeroDivisionError):
             for name, value in reversed(given):
                 turns = {Node(kind, name): call(kind, value) for kind in ("sin", "cos")}
@@ -108,13 +126,13 @@ def codistribution(system, point, moving, patience):
         words.update(new)
         if len(words) > WORDS:
             refuse(f"more than {WORDS} Lie derivatives")
-    return rows
+    return [word for word, _ in waiting], rows
 
 def is_so(system, point, asked, of, claimed, moving, patience):
     """Whether an identity, a generic rank, or what is observable generically is so at a point; and the rank."""
     if asked == "=":
         return all(point[gap] == 0 for gap in gaps(of)) if of[1] == "=" else refuse("an inequality"), 0
-    basis, rows = {}, each(point.__getitem__, of) if asked == "rank" and of else codistribution(system, point, moving, patience)
+    basis, rows = {}, each(point.__getitem__, of) if asked == "rank" and of else codistribution(system, point, moving, patience)[1]
     rank = sum(adds(row, basis, point.prime) for row in rows)
     if asked == "rank":
         return rank == claimed, rank
@@ -135,7 +153,7 @@ def at_random(system, record, _, seed):
                 why = "functions that were taken for unknowns"
                 refuse(why) if point.guessed else doubt("it is not so at a random point modulo a prime")
             found, least = found + 1, rank if least is None else min(least, rank)
-            if point.guessed or conditions or asked != "rank" or sense != "generic":
+            if point.guessed or conditions or asked != "rank" or sense != "generic" or not exists(system, point):
                 least = 0
         if found == POINTS:
             return of_a_rank(system, of, claimed, least, is_proved, f"{found} points modulo primes")
@@ -149,10 +167,97 @@ def proved(system, record, evidence, seed):
         return found
     if asked == "=":
         given = [gap for relation in conditions if relation[1] == "=" for gap in gaps(relation)]
-        return ("confirmed", "multiplied out") if are_zero(system, gaps(of), given) else found
+        if are_zero(system, gaps(of), given):
+            return "confirmed", "multiplied out"
     is_meant = record["asked"]["sense"] == "generic" and not conditions and not (asked == "rank" and of)
-    is_shown = is_meant and any(by_fields(system, asked, of, seed, is_whole) for is_whole in (False, True))
-    return ("confirmed", "by the fields that keep the system") if is_shown else found
+    if is_meant and any(by_fields(system, asked, of, seed, is_whole) for is_whole in (False, True)):
+        return "confirmed", "by the fields that keep the system"
+    is_meant = asked == "=" or record["asked"]["sense"] == "generic"
+    word = attempt(lambda: with_bounds(system, record, evidence, seed)) if is_meant else None
+    return {"all": ("confirmed", f"{POINTS} points modulo random primes, probability of an error below 2^-100"),
+            "half": ("half confirmed", f"the rank is no less; no greater at {POINTS} points modulo primes")}.get(word, found)
+
+def is_met(system, evidence, conditions):
+    """Whether inequalities hold strictly at a state of the evidence, which meets all conditions: near it they leave an open part of the set."""
+    if all(relation[1] == "=" for relation in conditions):
+        return True
+    states = [evidence["state"]] if "state" in evidence else [one["state"] for one in evidence["matrix"]["states"][:1]]
+    for state in states:
+        point = witness(system, state, *all_gaps(*conditions))
+        strict = all(point[gap].sign() != 0 for relation in conditions if relation[1] != "=" for gap in gaps(relation))
+        return strict and all(holds(point, relation) for relation in conditions)
+    return False
+
+def with_bounds(system, record, evidence, seed):
+    """`all` where what is claimed is so at as many points as the sizes of its numerators ask for, `half` where a rank is no less, or nothing. A minor that
+    is not zero at one point is generically not zero, since the functions that are met are algebraically independent."""
+    asked, of, claimed, conditions = system.statement(system.claims[record["id"]])
+    if system.names["initial"] or not is_solved_wholly(system, conditions) or not is_met(system, evidence, conditions):
+        return None
+    given, columns = solved(system, conditions), system.names["state"] + system.names["unknown"]
+    sizes, found, is_whole, least = Sizes(), 0, True, None
+    is_system = asked != "=" and not (asked == "rank" and of)
+    moving = motion(system, given) if is_system else None
+    if is_system and columns != system.columns():
+        return None
+    rates = [along[symbol(name)] for along in moving[1] for name in columns] if moving else []
+    roots = [*rates, *moving[0], *(of or [])] if moving else gaps(of) if asked == "=" else [x for row in of for x in row]
+    names, met = {name for name, _ in given}, {(node.kind, node.parts[0]) for root in roots for node in root.below() if node.parts}
+    if any(("exp", name) in met for name in names):
+        return None  # what is given has no exponential that is a variable of its own
+    for name, value in reversed(given):
+        sizes[name] = sizes[value]
+        if {("sin", name), ("cos", name)} & met:
+            sizes.update({Node(kind, name): sizes[call(kind, value)] for kind in ("sin", "cos")})
+    is_plain = all(value.kind == "number" and not {("sin", name), ("cos", name)} & met for name, value in given)
+    for point in points(given, (SALT, seed), SECRET):
+        point.guessed &= not is_plain  # sines of numbers that nothing asks for
+        with suppress(ZeroDivisionError):
+            if not exists(system, point):
+                return None
+            if asked == "=":
+                if any(point[gap] or point.guessed or not is_enough(sizes[gap].own, POINTS) for gap in gaps(of)):
+                    return None
+                found += 1
+            else:
+                part = of_rows_at(system, point, asked, of, claimed, moving, sizes)
+                if part is None or point.guessed:
+                    return None
+                found, (rank, is_told), least = found + 1, part, part[0]
+                is_whole = is_whole and is_told
+        if found == POINTS:
+            break
+    if found < POINTS:
+        return None
+    if asked == "=" or is_whole and (asked == "observable" or is_kept(system, moving, given, conditions) or asked == "rank" and of):
+        return "all"
+    full = asked == "rank" and least == (min(len(of), len(of[0])) if of else len(columns))
+    return "all" if full else "half" if asked == "rank" and least else None
+
+def of_rows_at(system, point, asked, of, claimed, moving, sizes):
+    """The rank at a point, where all is as claimed there, and whether sizes make it sure that it is no greater; or nothing."""
+    basis, (words, rows) = {}, (None, each(point.__getitem__, of)) if moving is None else codistribution(system, point, moving, 0)
+    rank = sum(adds(row, basis, point.prime) for row in rows)
+    inside, large = (of or []) if asked == "observable" else [], []
+    if asked == "rank" and rank != claimed:
+        return None
+    if asked != "rank" and not all(adds(point.gradient(x, system.columns()), {**basis}, point.prime) == (asked != "observable") for x in of):
+        return None
+    with suppress(NotImplementedError):
+        large = [sizes.of_row(row) for row in of] if words is None else [sizes.of_differential(x) for x in (*words, *inside)]
+        return rank, is_enough(sizes.of_minors(large, rank + 1), POINTS)
+    return rank, False
+
+def is_kept(system, moving, given, conditions):
+    """Whether no field leaves the set of the equations among some conditions."""
+    for gap in [gap for relation in conditions if relation[1] == "=" for gap in gaps(relation)]:
+        for along in moving[1] if moving else []:
+            rate = along[gap]
+            for one in given:
+                rate = Map(put_in, [one])[rate]
+            if rate is not number(0):
+                return False
+    return True
 
 def by_fields(system, asked, of, seed, is_whole):
     """Whether a rank is no more than was found, or functions are observable or not, by fields that keep the system; a rank that is no less at one point modulo a prime is generically no less."""
@@ -165,18 +270,24 @@ def by_fields(system, asked, of, seed, is_whole):
     for point in points([], seed):
         with suppress(ZeroDivisionError):
             basis = {}
+            if not exists(system, point):
+                return False
             dimension = sum(adds(fields.values(point, field), basis, point.prime) for field in fields.basis)
             if asked == "unobservable":
                 moved = [point.gradient(x, columns) for x in of]
                 return not point.guessed and all(any(dot(row, fields.values(point, field), point.prime) for field in fields.basis) for row in moved)
             basis = {}
-            rank = sum(adds(row, basis, point.prime) for row in codistribution(system, point, moving, 0))
+            rank = sum(adds(row, basis, point.prime) for row in codistribution(system, point, moving, 0)[1])
             if point.guessed or rank + dimension != len(columns):
                 return False
             return asked == "rank" or bool(attempt(lambda: all(fields.is_kept(x) for x in of)))
     return False
 
 def dot(row, other, prime): return sum(x * y for x, y in zip(row, other)) % prime
+
+def exists(system, point):
+    """Whether all that the statement names, what cancels there too, has a value at a point and near it; a root may have one at single states alone."""
+    return all(node.kind == "^" and point[node] is not None for node in system.partial())
 
 def of_a_rank(system, of, claimed, least, is_proved, where):
     """What a minor that is not zero at a point implies: generically the rank is no less."""

@@ -234,7 +234,7 @@ claim 3: {matrix} except where x = 0
     def test_fields_that_keep_a_system(self):
         """By hand: x, y grow and k, b fall by one factor, and no output changes; a cart's place and speed change with the time alone."""
         scaled = "system \"s\"\nstate x, y\nparam k, b unknown\ndrift f  x' = k*x*y  y' = -k*x*y\noutput b*x\n"
-        turned = "system \"t\"\nstate x, y, theta\nangle theta\ndrift f  x' = cos(theta)  y' = sin(theta)\noutput x^2 + y^2\n"
+        turned = "system \"t\"\nstate x, y, theta\nangle theta\ndrift f  x' = cos(theta)  y' = sin(theta)  theta' = 0\noutput x^2 + y^2\n"
         for text, statement, is_shown in (
                 (scaled, "rank = 3", True), (scaled, "unobservable(b, k, x, y)", True), (scaled, "observable(b*x, k/b)", True), (scaled, "observable(k)", False),
                 (scaled, "rank = 2", False), (scaled, "unobservable(k/b)", False), (scaled, "unobservable(k, b*y)", False), (turned, "rank = 2", True),
@@ -256,16 +256,60 @@ claim 3: {matrix} except where x = 0
         self.assertEqual(self.word("L(f, f, phi) = k*sin(phi)", "refuted", state=bent), "not confirmed")
 
     def test_ranks(self):
-        self.assertEqual(self.word("rank = 2", "claimed_rank", word="proved"), "half confirmed")
+        self.assertEqual(self.word("rank = 2", "claimed_rank", word="proved"), "confirmed")
         self.assertEqual(self.word("rank = 3", "claimed_rank", word="proved"), "not confirmed")
         self.assertEqual(self.word("rank = 3", "claimed_rank", word="refuted"), "consistent")
-        self.assertEqual(self.word("observable(omega, omega^2 + 3)", "claimed_rank", word="proved"), "consistent")
+        self.assertEqual(self.word("observable(omega, omega^2 + 3)", "claimed_rank", word="proved"), "confirmed")
         self.assertEqual(self.word("observable(omega, m)", "claimed_rank", word="proved"), "not confirmed")
-        self.assertEqual(self.word("unobservable(x, m)", "claimed_rank", word="proved"), "consistent")
+        self.assertEqual(self.word("unobservable(x, m)", "claimed_rank", word="proved"), "confirmed")
         # that no other word adds to it is not shown at a state
         self.assertEqual(self.word("rank", "rank", **RANKED), "half confirmed")
         states = [{**RANKED["states"][0], "minor": {"rows": [0, 2], "columns": [0, 1]}}]
         self.assertEqual(self.word("rank", "rank", **{**RANKED, "states": states}), "not confirmed")
+
+    def test_points(self):
+        """What is confirmed at random points: with conditions that say what symbols are, and not where they say less, a function has branches, or a field leaves the set."""
+        text = "system \"s\"\nstate x, y, z\nparam k\ndrift f  x' = y*z  y' = 0  z' = k*y\noutput x\n"
+        for claim, word in (
+            ("rank = 3", "confirmed"),
+            ("rank = 2 where k = 0", "confirmed"),
+            ("rank = 3 where k = 0", "not confirmed"),
+            ("rank = 1 where y = 0", "not confirmed"),
+            # no field leaves y = 0, and one leaves z = 0
+            ("rank = 2 where y = 0, z = 1", "confirmed"),
+            ("rank = 3 where z = 0", "confirmed"),
+            # of an equation that has two solutions not all is given
+            ("rank = 3 where z^2 = y^2", "not checked"),
+            ("rank = 2 where y*z = y", "consistent"),
+            ("observable(y*z) where k = 0", "confirmed"),
+            ("unobservable(x)", "not confirmed"),
+            ("rank([exp(x), 1; 1, exp(x)]) = 2", "confirmed"),
+            ("rank([exp(x), 1; 1, exp(x)]) = 2 where x = 0", "consistent"),
+            ("sin(x)^2 + cos(x)^2 = 1 where x = y*z", "confirmed"),
+        ):
+            self.write(text + f"claim 0: {claim}\n")
+            self.assertEqual(self.word(claim, "claimed_rank", word="proved"), word, claim)
+
+    def test_what_is_false_is_not_confirmed_by_what_is_lost(self):
+        """Roots that cancel leave single states; pi is no unknown; an entry behind another one is read by the program; each state has a rate. All of these are false."""
+        body = "state x, y\ndrift f  x' = 0  y' = 0\noutput x\n"
+        for text, claim in (
+            (body, "rank([1 - x, y]) = 1 where y = 0*sqrt(-(x^2 - x)^2)"),
+            (body, "rank([1 - x + 0*sqrt(-(x^2 - x)^2)]) = 1"),
+            (body, "rank([sin(x)]) = 1 where pi = x"),
+            (body, "rank([y]) = 1 where x = 0/(y - 1), y = 1"),
+            ("state x, y\nparam p\ndrift f  x' = 0  y' = 0\noutput (1 - p)*x\n", "rank = 1 where y = 0*sqrt(-(p^2 - p)^2)"),
+            ("state x, y\ndrift f  x' = 0  y' = 0\nsample x in [0, 1] y in [0, 1] output y\noutput x\n", "rank = 1"),
+            ("state x, y\ndrift f  x' = 0  y' = 0\noutput x : m output y : m\n", "rank = 1"),
+            ("state x, y initial y known\ndrift f  x' = 0  y' = 0\noutput x, y\n", "rank = 2"),
+            ("state x\ndrift f  x' = 0\nsample x in [0, 1] experiments 2\noutput x\n", "rank = 1"),
+            ("state x, y\ndrift f  x' = 0  y' = 0\noutput x\nclaim first: x = x \"t\" output y\n", "rank = 1"),
+            ("state x, line\ndrift f\n  x' = 0\n  line' = -x\noutput x\n", "L(f, line) = 0"),
+            ("state x, set, z\ndrift f\n  x' = set\n  set' = z\n  z' = 0\noutput x\n", "rank = 2"),
+        ):
+            self.write(f"system \"s\"\n{text}claim 0: {claim}\n")
+            kind = "proved" if claim.startswith("L(") else "claimed_rank"
+            self.assertNotIn(self.word(claim, kind, word="proved"), ("confirmed", "half confirmed"), claim)
 
     def test_boxes(self):
         self.write(BOX)
@@ -457,7 +501,7 @@ class Damage(Folder):
         whole = json.dumps({"schema": "palmistry-verdicts", "version": 4, "verdicts": [self.bound(entry) for entry in GOOD]})
         status, told = self.run_on(whole)
         self.assertEqual(status, 0, told)
-        self.assertIn("9 confirmed, 3 half confirmed, 5 consistent", told)
+        self.assertIn("13 confirmed, 1 half confirmed, 3 consistent", told)
         for text in ("", "[]", "{}", "nul", whole[:200], "[" * 100_000, whole.replace("palmistry-verdicts", "x"), whole.replace('"version": 4', '"version": 3'), '{"schema": 1}'):
             self.assertEqual(self.run_on(text)[0], 2)
         rng = random.Random(7)
@@ -598,10 +642,10 @@ class Damage(Folder):
     def test_size(self):
         """It is meant to be read in one sitting."""
         lines = 0
-        for module in ("recheck", "proof_parser", "proof_file", "graph", "multiplied"):
+        for module in ("recheck", "bounds", "proof_parser", "proof_file", "graph", "multiplied"):
             with open(os.path.join(os.path.dirname(recheck.__file__), module + ".py"), encoding="utf-8") as file:
                 lines += sum(1 for _ in file)
-        self.assertLessEqual(lines, 1400)
+        self.assertLessEqual(lines, 1650)
 
 
 if __name__ == "__main__":

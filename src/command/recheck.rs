@@ -16,7 +16,8 @@ use std::path::PathBuf;
 /// Each claim is read from its proof file. A refutation is evaluated again at its witness, a certified rank by its minor and its
 /// kernel, a certificate box by box: these are confirmed or not. An equation is confirmed where both sides become the same expression when
 /// multiplied out, a generic rank and what is observable by elimination among the expressions themselves. What takes too much
-/// work for that is tested at further states, and is half confirmed or consistent. Exit status 0 only when nothing failed.
+/// work for that is shown at random points modulo primes, where degrees are bounded, or is tested at further states, and is half confirmed or
+/// consistent. Exit status 0 only when nothing failed.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry prove mysystem.proof --verdicts claims.json && palmistry recheck claims.json

@@ -631,3 +631,33 @@ fn ranks_at_states_that_the_file_excludes() {
         assert_eq!(code, Some(if confirmed { 0 } else { 1 }), "k = {k}, z = {z}: {text}");
     }
 }
+
+/// A root that cancels leaves single states: what is not zero at one of them is not generically not zero. By hand, at x = 1 both ranks are 0.
+#[test]
+fn a_root_that_cancels_leaves_single_states() {
+    let folder = folder();
+    let path = folder.path().join("v.json");
+    let verdicts = path.to_str().unwrap();
+    let model = "system \"s\"\nstate x, y\ndrift f\n  others' = 0\noutput x\nclaim a: rank([1 - x]) = 1\nclaim b: rank([1 - x, y]) = 1\n";
+    let proof = write(&folder, "s.proof", model);
+    assert!(palmistry(&["prove", proof.to_str().unwrap(), "--verdicts", verdicts]).status.success());
+    let thin = model
+        .replace("rank([1 - x])", "rank([1 - x + 0*sqrt(-(x^2 - x)^2)])")
+        .replace("rank([1 - x, y])", "rank([1 - x, 0*sqrt(-(x^2 - x)^2)])");
+    write(&folder, "s.proof", &thin);
+    let mut found: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    for verdict in found["verdicts"].as_array_mut().unwrap() {
+        let id = verdict["id"].as_str().unwrap();
+        let statement = thin.lines().find_map(|line| line.strip_prefix(&format!("claim {id}: "))).unwrap();
+        verdict["statement"] = json!(statement);
+        verdict["digest"] = json!(palmistry::checker::source_digest(&thin));
+        let state = &mut verdict["evidence"]["claimed_rank"]["matrix"]["states"][0]["state"];
+        state["x"] = number("0");
+    }
+    std::fs::write(&path, found.to_string()).unwrap();
+    let checked = printed_json(&palmistry(&["recheck", verdicts, "--json"]));
+    for verdict in checked["verdicts"].as_array().unwrap() {
+        let finding = verdict["finding"].as_str().unwrap();
+        assert!(matches!(finding, "half confirmed" | "consistent" | "not checked"), "{checked}");
+    }
+}

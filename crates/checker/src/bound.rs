@@ -9,16 +9,19 @@ use super::claimed_rank::ClaimedWord;
 use super::doubt::{Doubt, Effort, Finding, ShownBy, Unchecked};
 use super::identity::StatedIdentity;
 use super::listing::Listing;
+use super::modular::{given_by, vanish};
 use super::normal::{Equations, follow};
 use super::record::{Evidence, VerdictRecord};
 use super::sources::source_digest;
 use super::state::{ExactCoordinate, ExactState, Ratio};
-use super::witness::Refutation;
+use super::witness::{Refutation, Sides, SidesRelation};
 use palmistry_lang::{System, in_one_line};
 use palmistry_math::expression::syntax::Relation;
 
 /// The work on multiplying out the sides of one claim.
 const WORK: u64 = 1 << 23;
+/// The work on them at random points.
+const POINTS: u64 = 1 << 28;
 
 /// Checks one verdict against its proof file.
 pub(super) fn check(record: &VerdictRecord, with: Checking<'_>) -> Finding {
@@ -203,11 +206,25 @@ fn proved(
         conditions: &own.conditions,
         requirements: &own.requirements,
     };
-    Ok(match follow(equations, &with.effort.limited(WORK)) {
-        Ok(true) => Finding::Shown(ShownBy::MultipliedOut),
-        // what takes too much work was not shown
-        _ => finding,
+    // what takes too much work is not shown
+    if follow(equations, &with.effort.limited(WORK)) == Ok(true) {
+        return Ok(Finding::Shown(ShownBy::MultipliedOut));
+    }
+    Ok(match agrees_at_points(&own, with.effort) {
+        true => Finding::Shown(ShownBy::AgreesAtPoints),
+        false => finding,
     })
+}
+
+/// Whether equations hold at random points, where the conditions say what symbols are.
+fn agrees_at_points(own: &StatedIdentity, effort: &Effort) -> bool {
+    let equal = |sides: &Sides| sides.relation == SidesRelation::Equal;
+    if own.sides.is_empty() || !own.sides.iter().all(equal) {
+        return false;
+    }
+    let differences: Vec<(usize, usize)> = own.sides.iter().map(|sides| (sides.left, sides.right)).collect();
+    given_by(&own.listing, &own.conditions, true)
+        .is_some_and(|given| vanish(&own.listing, &given, &differences, &effort.limited(POINTS)) == Ok(true))
 }
 
 /// Two numbers and how near they are, at the values that the file gives.

@@ -1,33 +1,21 @@
 //! Ranks checked against what the proof file says: rows are built anew, and what is left out of the evidence is not taken for granted.
 
 use super::binding::{ClaimKind, ClaimSense, RecordedWord, listed_statement};
+use super::bound_drawn::is_shown_at_points;
 use super::bound_span::{Asked, is_shown};
-use super::checking::{Checking, operations};
-use super::claim::{
-    BuiltClaim, ListedClaim, OWN_ROWS, Subject, further_rows, numbered_row, rows_of_lie_derivatives,
-};
+use super::checking::Checking;
+use super::claim::{BuiltClaim, OWN_ROWS, Subject, further_rows, numbered_row, rows_of_lie_derivatives};
 use super::claimed_rank::Tried;
 use super::doubt::{Doubt, Effort, Finding, Half, Missing, ShownBy, Unchecked};
-use super::listing::{Listing, Step};
+use super::listing::Listing;
 use super::minor::CertifiedRank;
 use super::normal::{Equations, states_on_parts};
+use super::own_matrix::{OwnMatrix, is_generic, is_rational, lowered};
 use super::record::{Evidence, VerdictRecord};
 use super::state::{ExactCoordinate, ExactState};
 use super::witness::holds;
 use palmistry_lang::{System, Value};
 use palmistry_math::expression::NodeId;
-use palmistry_math::expression::syntax::Relation;
-use palmistry_math::number::Function;
-
-/// A matrix as the proof file has it, at the states of the evidence.
-struct OwnMatrix {
-    matrix: CertifiedRank,
-    claim: ListedClaim,
-    /// Whether these are all rows that there are; Lie derivatives have no end.
-    is_whole: bool,
-    /// The same with further rows, among which a greater rank would show.
-    longer: CertifiedRank,
-}
 
 /// The work on rows of the checker's own.
 const TRIED: u64 = 1 << 25;
@@ -61,7 +49,7 @@ pub(super) fn of_a_claim(
     let is_of_lie_derivatives = !given.row_names.iter().any(|word| of_functions.contains(word));
     let own = own_matrix(system, claim, given)?;
     let is_refuted = record.verdict == RecordedWord::Refuted;
-    let is_generic = is_generic(claim, &own);
+    let is_generic = is_generic(&own);
     let rows = own.matrix.clone();
     let finding = by_states(record, claim, (claimed, is_of_lie_derivatives), own, with)?;
     let is_open = matches!(finding, Finding::HalfConfirmed(_) | Finding::Consistent { .. });
@@ -75,12 +63,18 @@ pub(super) fn of_a_claim(
         return Ok(finding);
     }
     let is_full = rank.is_some_and(|rank| rank == rows.columns.len());
-    if is_full && is_rational(&rows) && is_full_on_each_part(system, &rows, with)? {
+    if is_full
+        && is_rational(&rows.listing, rows.rows.iter().flatten().copied())
+        && is_full_on_each_part(system, &rows, with)?
+    {
         return Ok(Finding::Shown(ShownBy::EachPart));
     }
     let asked = Asked { rank, given: Some(given), is_generic, is_observable };
     if is_shown(system, claim, asked, with)? {
         return Ok(Finding::Shown(ShownBy::Eliminated));
+    }
+    if is_shown_at_points(system, claim, (asked, given), with)? {
+        return Ok(Finding::Shown(ShownBy::RankAtPoints));
     }
     Ok(finding)
 }
@@ -124,7 +118,7 @@ fn by_states(
     let is_refuted = record.verdict == RecordedWord::Refuted;
     match (&record.evidence, claimed) {
         (Evidence::ClaimedRank(found), Some(_)) if record.asked.sense == ClaimSense::Generic => {
-            let is_generic = is_generic(claim, &own);
+            let is_generic = is_generic(&own);
             let states = &own.matrix.states;
             let assumes_more = states.iter().any(|state| claim.is_exceeded_by(&state.state));
             let tried = Tried { is_whole: own.is_whole, is_generic, assumes_more, longer: Some(&own.longer) };
@@ -133,7 +127,7 @@ fn by_states(
         (Evidence::ClaimedRank(found), None) => {
             let full = own.matrix.columns.len();
             let is_full = is_of_lie_derivatives && own.matrix.states.iter().any(|state| state.rank == full);
-            let is_generic = is_generic(claim, &own);
+            let is_generic = is_generic(&own);
             let tried = Tried { is_whole: false, is_generic, assumes_more: false, longer: None };
             let finding = found.with_matrix(own.matrix).check_as(tried, with.seed, with.effort)?;
             let is_observable = record.asked.what == ClaimKind::Observable;
@@ -144,7 +138,7 @@ fn by_states(
             let full = own.matrix.columns.len();
             let is_full = is_of_lie_derivatives
                 && own.matrix.states.iter().any(|state| state.rank == full)
-                && is_generic(claim, &own);
+                && is_generic(&own);
             let is_observable = record.asked.what == ClaimKind::Observable;
             Ok(what_is_observable(finding, is_full, is_observable != is_refuted))
         }
@@ -374,75 +368,4 @@ fn of_rows(system: &mut System, claim: &BuiltClaim, given: &CertifiedRank) -> Re
         }
         _ => Err(Doubt::OtherColumns),
     }
-}
-
-fn lowered(
-    system: &System,
-    claim: &BuiltClaim,
-    given: &CertifiedRank,
-    (rows, mut further): (&[Vec<NodeId>], Vec<Vec<NodeId>>),
-) -> Result<OwnMatrix, Doubt> {
-    let by_steps =
-        given.states.iter().find(|state| !operations(&given.listing, &state.state).steps().is_empty());
-    let behind = by_steps.map_or_else(Listing::default, |state| operations(&given.listing, &state.state));
-    further.retain(|row| !rows.contains(row));
-    let lower = |rows: &[Vec<NodeId>]| {
-        claim.listed(system, &behind, |lowering| {
-            let row = |row: &Vec<NodeId>| row.iter().map(|entry| lowering.place(*entry)).collect();
-            rows.iter().map(row).collect::<Result<Vec<Vec<usize>>, _>>()
-        })
-    };
-    let matrix = |listed: &mut ListedClaim, rows: Vec<Vec<usize>>| CertifiedRank {
-        rows,
-        listing: std::mem::take(&mut listed.listing),
-        conditions: listed.conditions.clone(),
-        requirements: listed.requirements.clone(),
-        ..given.clone()
-    };
-    let (mut listed, places) = lower(rows)?;
-    let own = matrix(&mut listed, places);
-    further.extend_from_slice(rows);
-    let (mut with_more, places) = lower(&further)?;
-    let longer = matrix(&mut with_more, places);
-    Ok(OwnMatrix { matrix: own, claim: listed, is_whole: false, longer })
-}
-
-/// Whether a minor that is not zero at one state is not zero at almost all: the entries are quotients of functions that are
-/// analytic in all complex numbers, and the states are all there are, or an open part of them, or those with some values fixed.
-fn is_generic(claim: &BuiltClaim, own: &OwnMatrix) -> bool {
-    let steps = own.matrix.listing.steps();
-    let is_fixed = |condition: &super::witness::Sides| {
-        matches!(steps.get(condition.left), Some(Step::Symbol(_)))
-            && matches!(steps.get(condition.right), Some(Step::Constant(_)))
-    };
-    let is_open =
-        claim.conditions.iter().zip(&own.matrix.conditions).all(|((_, relation, _), sides)| match relation {
-            Relation::Less | Relation::Greater | Relation::NotEqual => true,
-            Relation::Equal => is_fixed(sides),
-            Relation::AtMost | Relation::AtLeast => false,
-        });
-    let by_numbers = |state: &super::minor::RankedState| {
-        !state.state.values().any(|value| matches!(value, ExactCoordinate::Step(place) if !matches!(steps.get(*place), Some(Step::Constant(_)))))
-    };
-    is_open && is_rational(&own.matrix) && own.matrix.states.iter().all(by_numbers)
-}
-
-/// Whether the entries are quotients of sums and products of symbols, sines, cosines and exponentials.
-fn is_rational(matrix: &CertifiedRank) -> bool {
-    let steps = matrix.listing.steps();
-    let mut open: Vec<usize> = matrix.rows.iter().flatten().copied().collect();
-    let mut met = vec![false; steps.len()];
-    while let Some(place) = open.pop() {
-        let Some(known) = met.get_mut(place) else { return false };
-        if std::mem::replace(known, true) {
-            continue;
-        }
-        if let Step::Apply(function, _) = &steps[place]
-            && !matches!(function, Function::Sin | Function::Cos | Function::Exp)
-        {
-            return false;
-        }
-        open.extend(steps[place].operands());
-    }
-    true
 }

@@ -118,12 +118,12 @@ fn try_show(
 }
 
 /// The names of the rows that are independent at the first state.
-fn rows_of_the_minor(given: &CertifiedRank) -> Option<Vec<String>> {
+pub(super) fn rows_of_the_minor(given: &CertifiedRank) -> Option<Vec<String>> {
     let minor = &given.states.first()?.minor;
     minor.rows.iter().map(|row| given.row_names.get(*row).cloned()).collect()
 }
 
-fn placed(lowering: &mut Lowering<'_>, rows: &[Vec<NodeId>]) -> Result<Vec<RowPlaces>, Missing> {
+pub(super) fn placed(lowering: &mut Lowering<'_>, rows: &[Vec<NodeId>]) -> Result<Vec<RowPlaces>, Missing> {
     rows.iter().map(|row| row.iter().map(|entry| lowering.place(*entry)).collect()).collect()
 }
 
@@ -231,7 +231,7 @@ fn has_forms(
 }
 
 /// Whether no field leaves the set on which the conditions hold.
-fn is_kept(system: &mut System, claim: &BuiltClaim, effort: &Effort) -> Result<bool, Doubt> {
+pub(super) fn is_kept(system: &mut System, claim: &BuiltClaim, effort: &Effort) -> Result<bool, Doubt> {
     let mut rates: Vec<Compared> = Vec::new();
     for (left, relation, right) in &claim.conditions {
         if *relation != Relation::Equal {

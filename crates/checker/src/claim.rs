@@ -227,6 +227,12 @@ fn subject(system: &mut System, statement: &Statement, guards: &mut Vec<Guard>) 
     let equation = &statement.equation;
     if equation.relation != Relation::Equal {
         let relations: Vec<Equation> = statement.relations().cloned().collect();
+        for side in relations.iter().flat_map(|relation| [&relation.left, &relation.right]) {
+            // bounds of ranks and of numbers of solutions are not examined
+            if value(system, side, guards)?.as_number().is_none() {
+                return Ok(Subject::Other);
+            }
+        }
         return compared(system, &relations, guards).map(Subject::Sides);
     }
     let left = value(system, &equation.left, guards)?;
@@ -303,6 +309,11 @@ fn lie_derivative(system: &mut System, text: &str) -> Result<NodeId, Doubt> {
         }
     }
     Ok(value)
+}
+
+/// Whether a name is that of a Lie derivative.
+pub(super) fn is_lie_derivative(system: &System, text: &str) -> bool {
+    fields_and_output(system, text).is_ok()
 }
 
 /// The fields of a Lie derivative, the last one first, and the output.

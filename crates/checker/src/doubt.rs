@@ -229,6 +229,12 @@ pub enum ShownBy {
     Eliminated,
     #[error("the rank is full at a state of each part of the set on which the conditions hold")]
     EachPart,
+    #[error("both sides agree at random points modulo random primes, error probability below 2^-100")]
+    AgreesAtPoints,
+    #[error(
+        "the rank is no less near a state, and no greater at random points modulo random primes, error probability below 2^-100"
+    )]
+    RankAtPoints,
 }
 
 /// Which half of a verdict was confirmed.

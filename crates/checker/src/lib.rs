@@ -4,7 +4,7 @@
 //! data, a state in exact numbers, the two sides, a minor. The checker reads the claim from the proof file, builds its sides and
 //! rows anew, and evaluates them naively, one operation after the other: a `Refutation` at its witness, a `CertifiedRank` by its
 //! minor and its kernel, a `StatedIdentity` and a `ClaimedRank` at states of its own choice. Equations and generic ranks it shows
-//! by itself, by multiplying out and by elimination (`normal`). The words of its findings are explained in `book/src/verdicts.md`.
+//! by itself, by multiplying out and by elimination (`normal`), or at random points modulo random primes (`modular`). The words of its findings are explained in `book/src/verdicts.md`.
 //!
 //! This floor knows exact numbers ([`palmistry_math::number`]), expressions with their derivatives, and the reader of proof files
 //! ([`palmistry_lang`]); none of the engines.
@@ -13,6 +13,7 @@
 
 mod binding;
 mod bound;
+mod bound_drawn;
 mod bound_rank;
 mod bound_span;
 mod boxes;
@@ -27,7 +28,9 @@ mod identity;
 mod listing;
 mod lowering;
 mod minor;
+mod modular;
 mod normal;
+mod own_matrix;
 mod piece;
 mod record;
 mod sources;
