@@ -118,7 +118,8 @@ def accessible(
 ) -> Told: ...
 def reparametrised(system: System) -> str: ...
 def least_model(
-    system: System, conditions: list[str], known: list[tuple[str, str | None]], undriven: list[str], driven: list[tuple[str, str]], signals: list[str]
+    system: System, conditions: list[str], known: list[tuple[str, str | None]], undriven: list[str], driven: list[tuple[str, str]], signals: list[str],
+    tolerance: float | None
 ) -> str: ...
 def imported(
     path: str,

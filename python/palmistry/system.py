@@ -381,6 +381,7 @@ class System:
         undriven: Iterable[str] = (),
         drive: Mapping[str, str] | None = None,
         signals: Iterable[str] = (),
+        tolerance: float | None = None,
         path: str | os.PathLike[str] | None = None,
     ) -> System:
         """The least model under conditions: without states that the conditions give, constants that are known, states on which no output depends, and of each conservation law one state. Its
@@ -388,6 +389,7 @@ class System:
 
         fix: conditions such as `omega1 = 0`; each has to stay met along every field. known: states and unknown constants that are known, with values or without: a constant becomes a parameter, a
         state that moves an output. undriven: inputs that nothing drives. drive: what drives an input; the drift of the new system is f + u g. signals: parameters that are known signals.
+        tolerance: terms of a rate go as well that together are at most this part of the median of its absolute values over the ranges of the file; how large they are at most is a claim.
         path: the proof file is written there too. This system has to come from a file, which the new one imports.
 
         >>> general = palmistry.System.read(pathlib.Path(ROOT, "proofs", "moll2002", "general.proof"))
@@ -398,8 +400,11 @@ class System:
         given = {name: None for name in known} if not isinstance(known, Mapping) else known
         pairs = [(name, None if value is None else _number(value)) for name, value in given.items()]
         conditions = [fix] if isinstance(fix, str) else list(fix)
+        if tolerance is not None and not 0.0 < tolerance < 1.0:
+            raise Error(f"the tolerance is {tolerance}", "give a part between 0 and 1, such as 1e-6")
+        driven = list((drive or {}).items())
         return self._derived(
-            lambda: _native.least_model(self._native, conditions, pairs, list(undriven), list((drive or {}).items()), list(signals)), "the least model", path
+            lambda: _native.least_model(self._native, conditions, pairs, list(undriven), driven, list(signals), tolerance), "the least model", path
         )
 
     def _derived(self, made: Callable[[], str], name: str, path: str | os.PathLike[str] | None) -> System:

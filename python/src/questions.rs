@@ -137,6 +137,7 @@ pub fn reparametrised(py: Python<'_>, system: &System) -> PyResult<String> {
 
 /// The text of the least model of a system under conditions, as a proof file. What is known may have a value, in the language of proof files.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)] // those of the Python function
 pub fn least_model(
     py: Python<'_>,
     system: &System,
@@ -145,6 +146,7 @@ pub fn least_model(
     undriven: Vec<String>,
     driven: Vec<(String, String)>,
     signals: Vec<String>,
+    tolerance: Option<f64>,
 ) -> PyResult<String> {
     let system = Read::clone(system.read_system());
     let found = interruptible(py, move |_| {
@@ -156,7 +158,8 @@ pub fn least_model(
             },
         };
         let known = known.into_iter().map(value).collect::<Result<_, String>>()?;
-        let question = ReduceQuestion { conditions, known, undriven, driven, signals };
+        let question =
+            ReduceQuestion { conditions, known, undriven, driven, signals, tolerance, ranges: Vec::new() };
         reduce(&system, &question, &system.name).map(|found| found.text).map_err(|why| why.to_string())
     })?;
     found.map_err(|why| unusable(py, &why, None))

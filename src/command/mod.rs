@@ -26,6 +26,7 @@ mod lsp;
 mod man;
 mod new;
 mod observe;
+mod observe_choice;
 mod observe_joint;
 mod observe_modes;
 mod observe_slow;

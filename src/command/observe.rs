@@ -1,6 +1,7 @@
 //! `palmistry observe`: a body or another system in motion, and observers that recover its state.
 
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, nothing_found, watched};
+use super::observe_choice::status_with;
 use super::observe_stream;
 use super::observe_studies::studies;
 use super::output::{Files, Form, print_in_lines, progress, read_scene};
@@ -19,7 +20,9 @@ use palmistry::experiment::{
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
 use palmistry::observer::RecordError;
-use palmistry::report::{Observed, forget_seconds, observe_json, observe_page, observe_text};
+use palmistry::report::{
+    Observed, choice_json, choice_text, forget_seconds, observe_json, observe_page, observe_text,
+};
 use palmistry::sweep::shard_of;
 use palmistry::system::Code;
 use std::path::{Path, PathBuf};
@@ -51,6 +54,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry observe proofs/moll2002/scenes/section_4_6.toml --out observed
+  palmistry observe SCENE --accuracy 1e-3                   the cheapest observer that is accurate enough
   palmistry observe SCENE --record - | palmistry observe SCENE --data - --json")]
 pub(crate) struct Observe {
     /// The scene.
@@ -79,6 +83,13 @@ pub(crate) struct Observe {
     /// Write the estimates sample by sample to a file, CSV or Parquet: each state with its bound.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
     pub(super) track: Option<PathBuf>,
+    /// Choose the observer, in the place of those that the scene names: filters, windows of more and more samples and all samples at once are tried until
+    /// the standard deviation of each estimated state at the end is at most this part of its size, as in 1e-3.
+    #[arg(long, value_name = "PART", value_parser = super::reduce::part, conflicts_with_all = ["within", "studies", "shard", "merge", "missing"])]
+    pub(super) accuracy: Option<f64>,
+    /// Choose the observer in the same way: the most accurate of those whose estimate takes at most this long, as in 20ms or 1.5s.
+    #[arg(long, value_name = "TIME", value_parser = super::observe_choice::time, conflicts_with_all = ["studies", "shard", "merge", "missing"])]
+    pub(super) within: Option<f64>,
     #[command(flatten)]
     pub(super) shards: Shards,
     /// Print no times: two runs with one seed on one machine then write the same to the last byte, as a merge does, which has no times.
@@ -105,12 +116,15 @@ impl Observe {
 
     fn work(self, kept: &KeptSlow) -> miette::Result<Status> {
         if let Some(space) = SpaceScene::read(&self.scene) {
+            self.has_no_choice("a body in space")?;
             return self.run_space(space?);
         }
         if let Some(slow) = SlowScene::read(&self.scene) {
+            self.has_no_choice("a body that is moved slowly")?;
             return self.run_slow(slow?, kept);
         }
         if let Some(joint) = JointScene::read(&self.scene) {
+            self.has_no_choice("a scene with several experiments")?;
             return self.run_joint(joint?);
         }
         let mut scene = read_scene(&self.scene)?;
@@ -174,6 +188,7 @@ impl Observe {
             bar.finish_and_clear();
             return Ok(files.status(Status::of(true)));
         }
+        let choice = self.choose(&mut experiment, &bar)?;
         bar.set_message("observing");
         if !experiment.scene.observer.modes.is_empty() {
             return self.run_modes(&experiment, &bar, files);
@@ -202,6 +217,9 @@ impl Observe {
         if no_times {
             forget_seconds(&mut json);
         }
+        if let Some(choice) = &choice {
+            json["choice"] = choice_json(choice, !no_times);
+        }
         if let Some(folder) = &self.out {
             files.text(&folder.join("index.html"), &observe_page(&observed));
             files.json(&folder.join("observe.json"), &json);
@@ -226,7 +244,12 @@ impl Observe {
         });
         let is_known = |found: &Recognition| found.verdict != RecognitionVerdict::NoneOfThem;
         let status = Status::of(as_expected && experiment.recognition.as_ref().is_none_or(is_known));
-        files.print(Form::of(self.json), json, || observe_text(&observed), status)
+        let status = status_with(status, choice.as_ref());
+        let text = || match &choice {
+            Some(choice) => format!("{}\n{}", choice_text(choice, !no_times), observe_text(&observed)),
+            None => observe_text(&observed),
+        };
+        files.print(Form::of(self.json), json, text, status)
     }
 }
 
@@ -286,6 +309,8 @@ impl Observe {
             ("--out", self.out.is_some()),
             ("--outline", self.outline.is_some()),
             ("--track", self.track.is_some()),
+            ("--accuracy", self.accuracy.is_some()),
+            ("--within", self.within.is_some()),
         ];
         match asked.iter().find(|(_, is_asked)| *is_asked) {
             Some((name, _)) if self.records_to_output() => {
@@ -315,6 +340,8 @@ impl Observe {
                 ("--motion", self.motion.is_some()),
                 ("--outline", self.outline.is_some()),
                 ("--track", self.track.is_some()),
+                ("--accuracy", self.accuracy.is_some()),
+                ("--within", self.within.is_some()),
             ];
             if let Some((name, _)) = asked.iter().find(|(_, is_asked)| *is_asked) {
                 let message = format!("{name} needs all measurements, and a stream is not kept");

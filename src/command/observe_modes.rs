@@ -20,6 +20,8 @@ impl Observe {
             ("--out", self.out.is_some()),
             ("--outline", self.outline.is_some()),
             ("--track", self.track.is_some()),
+            ("--accuracy", self.accuracy.is_some()),
+            ("--within", self.within.is_some()),
         ];
         match asked.iter().find(|(_, is_asked)| *is_asked) {
             Some((name, _)) if !scene.observer.modes.is_empty() => {

@@ -26,6 +26,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry plan proofs/moll2002/scenes/fixed_palms.toml
+  palmistry plan SCENE --tolerance 1e-6                     without terms that are small over its ranges
   palmistry plan SCENE --data recording.csv --out least.proof && palmistry rank least.proof
 
 Exit status: 0 nothing that is estimated is shown to be unobservable, 1 something is, or a claim of the least model is not proved, 2 the scene cannot be used.")]
@@ -38,6 +39,10 @@ pub(crate) struct Plan {
     /// Take this seed and not the scene's.
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
+    /// Leave out terms of a rate that together are at most this part of the median of its absolute values, as in 1e-6: over the ranges of the
+    /// measurements, the bounds of what is estimated, and else those of the model's file. How large they are at most is proved, or they stay.
+    #[arg(long, value_name = "PART", value_parser = super::reduce::part)]
+    tolerance: Option<f64>,
     /// Write the proof file of the least model here.
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
@@ -61,7 +66,7 @@ impl Plan {
         let model = PathBuf::from(&scene.model);
         let experiment = Experiment::new(scene, self.data.as_deref())?;
         let whole = std::path::absolute(&model).unwrap_or_else(|_| model.clone());
-        let mut plan = experiment.plan(&name_of(&whole), !self.no_times, &INTERRUPTED)?;
+        let mut plan = experiment.plan(&name_of(&whole), !self.no_times, self.tolerance, &INTERRUPTED)?;
         let out = self.out.as_deref().filter(|out| out.as_os_str() != "-");
         let mut outcomes = Vec::new();
         let mut files = Files::default();

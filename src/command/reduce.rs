@@ -26,6 +26,7 @@ use std::path::{Path, PathBuf};
   palmistry reduce general.proof --fix omega1=0,omega2=0,alpha1=0,alpha2=0 --known rho --out fixed.proof
   palmistry reduce general.proof --fix alpha1=0,alpha2=0 --undriven g1,g2
   palmistry reduce general.proof --fix omega1=0,omega2=0,alpha1=0,alpha2=0 --drive g1=tau1,g2=tau2
+  palmistry reduce spinning.proof --tolerance 1e-6          terms that are small over the ranges, with a proved bound
   palmistry reduce sir.proof                                conservation laws, states on which no output depends
 
 Exit status: 0 all claims of the new file are proved, 1 some are not, 2 there is no such model.")]
@@ -47,6 +48,10 @@ pub(crate) struct Reduce {
     /// Parameters that are known signals.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     signal: Vec<String>,
+    /// Leave out terms of a rate that together are at most this part of the median of its absolute values over the ranges of the file, as in 1e-6. How
+    /// large they are at most is proved, or they stay.
+    #[arg(long, value_name = "PART", value_parser = part)]
+    tolerance: Option<f64>,
     /// Write the proof file here; without it, it is printed.
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
@@ -125,7 +130,17 @@ impl Reduce {
             undriven: list(&self.undriven),
             driven: driven.collect::<miette::Result<_>>()?,
             signals: list(&self.signal),
+            tolerance: self.tolerance,
+            ranges: Vec::new(),
         })
+    }
+}
+
+/// A part of something: a number above zero and below one.
+pub(super) fn part(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(part) if part > 0.0 && part < 1.0 => Ok(part),
+        _ => Err("write a number above 0 and below 1, as in 1e-6".to_owned()),
     }
 }
 

@@ -3,6 +3,7 @@
 //! [`reduce`] puts conditions into a system, and leaves out what they make superfluous: states that the conditions give, constants that are known, states on
 //! which no output depends, signals that nothing needs, and of each conservation law one state. What comes out is the text of a proof file that imports the
 //! larger one, and claims all that makes the two equal under the conditions. Nothing here decides these claims: they are proved like those of any other file.
+//! Where a tolerance is given, summands of rates that are small over the ranges go too (`small_terms`), and the claims bound what they are.
 //!
 //! Where every field keeps the conditions, the states that meet them are a system of their own, and the smaller one is that system: its ranks are those of the larger
 //! one for someone who knows that the conditions hold. A known constant is a parameter, whose differential no rank counts. What was left out because no output
@@ -10,15 +11,18 @@
 
 #![warn(missing_docs)]
 
+mod differences;
 mod flows;
 mod laws;
 mod names;
 mod question;
 mod remaining;
+mod small_terms;
 mod text;
 
 pub use question::{NotReduced, ReduceQuestion};
 pub use remaining::{LeftOutState, WhyLeftOut};
+pub use small_terms::SmallTerms;
 
 use palmistry_lang::System;
 use palmistry_math::expression::Program;
@@ -33,6 +37,8 @@ pub struct LeastModel {
     pub conditions: Vec<String>,
     /// What the larger system has and the smaller one has not, in the larger one's order.
     pub left_out: Vec<LeftOutState>,
+    /// The terms that were left out of rates because they are small, and how large they are at most.
+    pub small_terms: Vec<SmallTerms>,
     /// The states that move and the unknown constants of the larger system, and of the smaller one.
     pub unknowns: [usize; 2],
     /// Those of them that move.
@@ -59,6 +65,10 @@ pub fn reduce(system: &System, question: &ReduceQuestion, import: &str) -> Resul
     remaining.take_constants_as_known(question)?;
     remaining.leave_out_what_no_output_needs();
     remaining.use_conservation_laws();
+    let small_terms = match question.tolerance {
+        Some(tolerance) => remaining.leave_out_small_terms(tolerance),
+        None => Vec::new(),
+    };
     remaining.put_in_order();
     let after = remaining.counts();
     let text = text::text(&mut remaining, import)?;
@@ -66,6 +76,7 @@ pub fn reduce(system: &System, question: &ReduceQuestion, import: &str) -> Resul
         text,
         conditions: remaining.conditions(),
         left_out: remaining.left_out.clone(),
+        small_terms,
         unknowns: [before.0, after.0],
         moving: [before.1, after.1],
         operations: [before_operations, operations(&remaining)],

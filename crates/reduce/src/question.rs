@@ -1,6 +1,7 @@
 //! What is asked of a reduction, and why there is none.
 
 use dashu::rational::RBig;
+use palmistry_lang::Range;
 
 /// Which conditions hold, and what is known.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +18,11 @@ pub struct ReduceQuestion {
     pub driven: Vec<(String, String)>,
     /// Parameters that are known signals.
     pub signals: Vec<String>,
+    /// Terms of a rate that together are at most this part of the median of the rate's absolute values over the ranges are left out, as far as that is
+    /// shown.
+    pub tolerance: Option<f64>,
+    /// Ranges in the place of those that the file gives.
+    pub ranges: Vec<(String, Range)>,
 }
 
 /// Why a system is not written smaller.

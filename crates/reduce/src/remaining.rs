@@ -3,6 +3,7 @@
 use super::flows::{Flow, component, flows, given};
 use super::laws::{Law, Movements, laws};
 use super::question::{NotReduced, ReduceQuestion};
+use super::small_terms::{LeftOutOfRate, SmallTerms, leave_out_small_terms};
 use dashu::rational::RBig;
 use palmistry_lang::{Assignment, System, Time, UnknownKind, nearest};
 use palmistry_math::expression::{
@@ -26,6 +27,8 @@ pub enum WhyLeftOut {
     NoOutputDependsOnIt,
     /// No output depends on it, and its initial condition is known.
     NotNeeded,
+    /// Outputs depend on it by small terms alone, which are left out.
+    InSmallTermsAlone,
     /// A conservation law gives it by the others: the law, and the name of the constant.
     Conserved {
         /// What is conserved: `S + I + R`.
@@ -73,6 +76,8 @@ pub(crate) struct Remaining {
     /// Parameters of the larger system that are known signals.
     pub signals: Vec<Symbol>,
     pub laws: Vec<Law>,
+    /// Rates without their small terms.
+    pub approximated: Vec<LeftOutOfRate>,
     pub left_out: Vec<LeftOutState>,
     pub remarks: Vec<String>,
     /// The order in which things are left out is that of the larger system.
@@ -99,6 +104,11 @@ impl Remaining {
         let signals: HashSet<Symbol> = system.signal_chains().into_iter().flatten().collect();
         let flows = flows(system, question)?;
         let mut system = system.clone();
+        for (name, range) in &question.ranges {
+            if let Some(info) = system.find_symbol(name).and_then(|symbol| system.symbols.get_mut(&symbol)) {
+                info.range = Some(range.clone());
+            }
+        }
         let states: Vec<Symbol> =
             system.states.iter().copied().filter(|state| !signals.contains(state)).collect();
         let rates = flows
@@ -130,6 +140,7 @@ impl Remaining {
             constants: Vec::new(),
             signals,
             laws: Vec::new(),
+            approximated: Vec::new(),
             left_out: Vec::new(),
             remarks: Vec::new(),
             system,
@@ -367,8 +378,30 @@ impl Remaining {
         self.states.iter().copied().chain(unknown).collect()
     }
 
+    /// Leaves out terms that are small over the ranges, and then what outputs depend on by them alone.
+    pub fn leave_out_small_terms(&mut self, tolerance: f64) -> Vec<SmallTerms> {
+        let (told, approximated) = leave_out_small_terms(self, tolerance);
+        self.approximated = approximated;
+        if !told.is_empty() {
+            self.remarks.push("the rank is of this model: small terms may make more observable".to_owned());
+        }
+        for place in self.not_needed() {
+            self.leave_out(place, WhyLeftOut::InSmallTermsAlone);
+        }
+        told
+    }
+
     /// Leaves out states and constants on which no output depends, by itself or by the rate of something on which it does.
     pub fn leave_out_what_no_output_needs(&mut self) {
+        for place in self.not_needed() {
+            let is_known = self.system.known.contains(&self.states[place]);
+            let why = if is_known { WhyLeftOut::NotNeeded } else { WhyLeftOut::NoOutputDependsOnIt };
+            self.leave_out(place, why);
+        }
+    }
+
+    /// The places of what no output depends on, the last one first.
+    fn not_needed(&self) -> Vec<usize> {
         let places: HashMap<Symbol, usize> =
             self.states.iter().enumerate().map(|(place, state)| (*state, place)).collect();
         let mut needed: HashSet<Symbol> = self.further_outputs.iter().copied().collect();
@@ -391,13 +424,7 @@ impl Remaining {
                 open.extend(rates_of(&symbol));
             }
         }
-        for place in (0..self.states.len()).rev() {
-            if !needed.contains(&self.states[place]) {
-                let is_known = self.system.known.contains(&self.states[place]);
-                let why = if is_known { WhyLeftOut::NotNeeded } else { WhyLeftOut::NoOutputDependsOnIt };
-                self.leave_out(place, why);
-            }
-        }
+        (0..self.states.len()).rev().filter(|place| !needed.contains(&self.states[*place])).collect()
     }
 
     /// Takes the last state of each conservation law that is no output by the others, and the conserved amount as an unknown constant in its place.

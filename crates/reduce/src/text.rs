@@ -4,6 +4,7 @@ use super::flows::Flow;
 use super::names::{Names, TOO_LONG};
 use super::question::NotReduced;
 use super::remaining::{LeftOutState, Remaining, WhyLeftOut};
+use super::small_terms::LeftOutOfRate;
 use dashu::rational::RBig;
 use palmistry_lang::{Assignment, Kind, parse_statement};
 use palmistry_math::expression::syntax::Equation;
@@ -61,6 +62,12 @@ fn head(out: &mut String, remaining: &Remaining, import: &str) {
                 writeln!(out, "# {name} is left out: no output depends on it, so that it is unobservable")
             }
             WhyLeftOut::NotNeeded => writeln!(out, "# {name} is left out: no output depends on it"),
+            WhyLeftOut::InSmallTermsAlone => {
+                writeln!(
+                    out,
+                    "# {name} is left out: outputs depend on it by small terms alone, which are left out"
+                )
+            }
             WhyLeftOut::Conserved { law, total } => {
                 writeln!(out, "# {name} is left out: {law} is conserved, and is the unknown constant {total}")
             }
@@ -68,6 +75,14 @@ fn head(out: &mut String, remaining: &Remaining, import: &str) {
     }
     for remark in &remaining.remarks {
         let _ = writeln!(out, "# {remark}");
+    }
+    for one in &remaining.approximated {
+        let (state, bound) = (remaining.system.symbol_name(one.state), &one.bound);
+        let field = &remaining.flows[one.flow].name;
+        let _ = writeln!(
+            out,
+            "# small terms of {state}' along {field} are left out: together at most {bound} over the ranges"
+        );
     }
     let title = one_line(&remaining.system.title);
     let _ = writeln!(out, "\nsystem \"{title}: the least model\"\n");
@@ -425,18 +440,30 @@ fn claims(out: &mut String, remaining: &mut Remaining, names: &Names) -> Result<
             let _ = writeln!(out, "claim {}.{}: {rate} = 0{fixed_place}", law.name, flow.name);
         }
     }
-    let _ = writeln!(out, "\n# the larger system moves so, and its outputs are the same");
+    let moves = match remaining.approximated.is_empty() {
+        true => "the larger system moves so",
+        false => "the larger system moves so, but for the terms that are left out",
+    };
+    let _ = writeln!(out, "\n# {moves}, and its outputs are the same");
     let totals: Vec<Symbol> = remaining.laws.iter().map(|law| law.total).collect();
-    for flow in &flows {
+    for (place, flow) in flows.iter().enumerate() {
         let field = &flow.name;
-        for state in remaining.states.iter().filter(|state| !totals.contains(state)) {
-            if remaining.is_declared_constant(*state) {
+        for state in remaining.states.clone().into_iter().filter(|state| !totals.contains(state)) {
+            if remaining.is_declared_constant(state) {
                 continue; // a constant is one in both
             }
-            let name = remaining.system.symbol_name(*state);
-            let id = id(name);
-            let rate = along(remaining, flow, name);
-            let _ = writeln!(out, "claim {field}.{id}: L({field}, {name}) = {rate}{whole_place}");
+            let name = remaining.system.symbol_name(state).to_owned();
+            let id = id(&name);
+            let rate = along(remaining, flow, &name);
+            match remaining.approximated.iter().position(|one| one.flow == place && one.state == state) {
+                None => {
+                    let _ = writeln!(out, "claim {field}.{id}: L({field}, {name}) = {rate}{whole_place}");
+                }
+                Some(one) => {
+                    let difference = format!("{rate} - L({field}, {name})");
+                    bounded(out, remaining, names, &remaining.approximated[one].clone(), &difference, &all);
+                }
+            }
         }
     }
     let mut texts = Vec::new();
@@ -449,6 +476,41 @@ fn claims(out: &mut String, remaining: &mut Remaining, names: &Names) -> Result<
     }
     let _ = writeln!(out, "claim output: {LARGER}.output = [{}]{whole_place}", texts.join("; "));
     Ok(())
+}
+
+/// The claims that bound what was left out of a rate: what it is, where that could be written, and how large it is over the ranges.
+fn bounded(
+    out: &mut String,
+    remaining: &mut Remaining,
+    names: &Names,
+    left_out: &LeftOutOfRate,
+    difference: &str,
+    conditions: &[String],
+) {
+    let id = format!(
+        "{}.{}",
+        remaining.flows[left_out.flow].name,
+        id(remaining.system.symbol_name(left_out.state))
+    );
+    let place = |conditions: &[String]| match conditions.is_empty() {
+        true => String::new(),
+        false => format!(" where {}", conditions.join(", ")),
+    };
+    let written = names.text(remaining, left_out.difference, None);
+    let difference = match written.starts_with(TOO_LONG) {
+        false => {
+            let _ = writeln!(out, "claim {id}.left_out: {difference} = {written}{}", place(conditions));
+            written
+        }
+        true => difference.to_owned(),
+    };
+    let ranges = left_out.ranges.iter().map(|(symbol, low, high)| {
+        let name = remaining.system.symbol_name(*symbol);
+        if low == high { format!("{name} = {low}") } else { format!("{low} <= {name} <= {high}") }
+    });
+    let all: Vec<String> = conditions.iter().cloned().chain(ranges).collect();
+    let bound = &left_out.bound;
+    let _ = writeln!(out, "claim {id}: -{bound} <= {difference} <= {bound}{}", place(&all));
 }
 
 /// A name as a part of a claim's id.

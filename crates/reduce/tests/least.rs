@@ -37,6 +37,7 @@ fn names(found: &LeastModel) -> Vec<(&str, &str)> {
         WhyLeftOut::MeasuredConstant => "measured",
         WhyLeftOut::NoOutputDependsOnIt => "dead",
         WhyLeftOut::NotNeeded => "not needed",
+        WhyLeftOut::InSmallTermsAlone => "small",
         WhyLeftOut::Conserved { .. } => "conserved",
     };
     found.left_out.iter().map(|one| (one.name.as_str(), word(&one.why))).collect()

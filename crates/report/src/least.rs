@@ -4,7 +4,7 @@ use crate::layout::{counted, item, prose};
 use palmistry_io::foreign::shown;
 use palmistry_prove::claim::Outcome;
 use palmistry_rank::observability::GenericAnswer;
-use palmistry_reduce::{LeastModel, LeftOutState, WhyLeftOut};
+use palmistry_reduce::{LeastModel, LeftOutState, SmallTerms, WhyLeftOut};
 use palmistry_scenes::{PlanRank, Scene, ScenePlan};
 use serde_json::{Value, json};
 
@@ -48,6 +48,14 @@ fn model_lines(least: &LeastModel, out: &mut String) {
     for LeftOutState { name, why } in &least.left_out {
         item(&format!("{name}: {}", why_in_words(why)), out);
     }
+    for own in &least.small_terms {
+        let SmallTerms { state, field, terms, bound, median } = own;
+        let text = format!(
+            "{state}' along {field}: left out {}, together at most {bound}; the median of the rate is {median:.1e}",
+            terms.join(", ")
+        );
+        item(&shown(&text), out);
+    }
     for remark in &least.remarks {
         item(remark, out);
     }
@@ -83,6 +91,7 @@ fn why_in_words(why: &WhyLeftOut) -> String {
         WhyLeftOut::MeasuredConstant => "constant and measured, a parameter now".to_owned(),
         WhyLeftOut::NoOutputDependsOnIt => "no output depends on it: unobservable".to_owned(),
         WhyLeftOut::NotNeeded => "no output depends on it; its initial condition is known".to_owned(),
+        WhyLeftOut::InSmallTermsAlone => "outputs depend on it by small terms alone".to_owned(),
         WhyLeftOut::Conserved { law, total } => format!("{law} is conserved: the unknown constant {total}"),
     }
 }
@@ -95,16 +104,19 @@ fn model_json(least: &LeastModel, outcomes: &[Outcome]) -> Value {
             WhyLeftOut::MeasuredConstant => "measured_constant",
             WhyLeftOut::NoOutputDependsOnIt => "no_output_depends_on_it",
             WhyLeftOut::NotNeeded => "not_needed",
+            WhyLeftOut::InSmallTermsAlone => "in_small_terms_alone",
             WhyLeftOut::Conserved { .. } => "conserved",
         };
         json!({ "name": one.name, "why": word, "in_words": why_in_words(&one.why) })
     });
+    let small = |own: &SmallTerms| json!({ "state": own.state, "field": own.field, "terms": own.terms, "at_most": own.bound, "median_of_rate": own.median });
     let claim = |outcome: &Outcome| json!({ "id": outcome.id, "statement": outcome.statement, "verdict": outcome.word() });
     let pair = |[before, after]: [usize; 2]| json!({ "before": before, "after": after });
     json!({
         "proof": least.text,
         "conditions": least.conditions,
         "left_out": left_out.collect::<Vec<_>>(),
+        "small_terms": least.small_terms.iter().map(small).collect::<Vec<_>>(),
         "unknowns": pair(least.unknowns),
         "moving": pair(least.moving),
         "operations": pair(least.operations),

@@ -7,6 +7,7 @@
 mod advice;
 mod axis;
 mod certificate;
+mod choice;
 mod claims;
 mod compact;
 mod document;
@@ -49,6 +50,8 @@ pub use axis::unit_of;
 #[doc(hidden)]
 pub use certificate::percent;
 pub use certificate::{region_curve, region_json, region_map, region_text};
+#[doc(hidden)]
+pub use choice::{choice_json, choice_text};
 pub use claims::{
     ClaimsForm, ClaimsSummary, Shown, claim_json, claim_line, claim_text, claims_text, counts_text,
     errata_markdown, junit,
@@ -64,7 +67,6 @@ pub use joint::{JointObserved, joint_json, joint_page, joint_parameters, joint_s
 #[doc(hidden)]
 pub use layout::Colour;
 pub use layout::Layout;
-#[doc(hidden)]
 pub use least::{least_json, least_text, plan_json, plan_text};
 pub use motion::{Observed, modes_json, modes_text, observe_json, observe_page, observe_text};
 #[doc(hidden)]

@@ -11,6 +11,7 @@
 
 mod advice;
 mod channels;
+mod choice;
 mod columns;
 mod counted;
 mod groundwork;
@@ -47,6 +48,7 @@ pub mod unguided;
 
 #[doc(hidden)]
 pub use advice::{Advice, AdviceLimits, AdviceQuestion, ExpectedBounds, TriedMotion, advise};
+pub use choice::{ObserverChoice, Sufficient, TriedObserver};
 pub use known_motion::KnownMotion;
 pub use modes::{ModeEstimate, ModeWindow};
 #[doc(hidden)]

@@ -5,7 +5,7 @@ use super::motion_rank::MotionRank;
 use super::run::Experiment;
 use super::scene::SceneError;
 use palmistry_io::UNINTERRUPTED;
-use palmistry_lang::{Assignment, Kind, Role, System, given_number};
+use palmistry_lang::{Assignment, Kind, Range, Role, System, given_number};
 use palmistry_math::expression::{Input, Program};
 use palmistry_math::number::Floats;
 use palmistry_observe::{CalibrationKind, EstimateQuestion, Model, MotionRankFound, Task};
@@ -95,16 +95,23 @@ const EVALUATIONS: usize = 2000;
 
 impl Experiment {
     /// What the scene requires; `import` is the path of the model's file as the least model's file names it, from the working folder. Times are measured where they are
-    /// asked for.
+    /// asked for. Where a tolerance is given, terms of a rate that together are at most this part of the median of its absolute values go as well, over the ranges of the measurements, the bounds of what is
+    /// estimated, and else those of the model's file.
     ///
     /// # Errors
     /// As [`Experiment::task`].
-    pub fn plan(&self, import: &str, times: bool, interrupt: &AtomicBool) -> Result<ScenePlan, SceneError> {
+    pub fn plan(
+        &self,
+        import: &str,
+        times: bool,
+        tolerance: Option<f64>,
+        interrupt: &AtomicBool,
+    ) -> Result<ScenePlan, SceneError> {
         let task = self.task(interrupt)?;
         let known = self.known_to_the_least_model();
         let smallest = self.model_with(known.clone());
         let smallest = smallest.as_ref().unwrap_or(&task.full);
-        let least = self.least_model(smallest, &known, import);
+        let least = self.least_model(smallest, &known, import, tolerance);
         let generic = least.as_ref().ok().and_then(|least| self.generic(least));
         let truth = self.signals.times().first().and_then(|time| self.truth_at(*time));
         let along_truth = truth.is_some();
@@ -237,6 +244,7 @@ impl Experiment {
         model: &Model,
         known_values: &BTreeMap<String, f64>,
         import: &str,
+        tolerance: Option<f64>,
     ) -> Result<LeastModel, String> {
         let question = &self.question;
         if let Some((name, _)) = question.guess.iter().find(|(name, _)| CalibrationKind::of(name).is_some()) {
@@ -271,8 +279,26 @@ impl Experiment {
             }
         }
         known.retain(|(name, _)| !self.names().contains(&name.as_str()));
-        let question = ReduceQuestion { conditions, known, undriven, driven, signals };
+        let ranges = if tolerance.is_some() { self.ranges() } else { Vec::new() };
+        let question = ReduceQuestion { conditions, known, undriven, driven, signals, tolerance, ranges };
         reduce(system, &question, import).map_err(|why| why.to_string())
+    }
+
+    /// Where the columns of the measurements and what is estimated within bounds lie.
+    fn ranges(&self) -> Vec<(String, Range)> {
+        let measured = self.signals.names().iter().enumerate().map(|(place, name)| {
+            let values = self.signals.column(place).iter().copied().filter(|value| !value.is_nan());
+            let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+                [low.min(value), high.max(value)]
+            });
+            (name, [low, high])
+        });
+        let bounded = self.scene.observer.bounds.iter().map(|(name, range)| (name, *range));
+        // the shortest decimal of a number is what somebody wrote
+        let exact = |value: f64| given_number(&format!("{value}")).ok();
+        let ranges = measured.chain(bounded).filter(|(_, [low, high])| low.is_finite() && high.is_finite());
+        let range = |[low, high]: [f64; 2]| Some(Range { low: exact(low)?, high: exact(high)? });
+        ranges.filter_map(|(name, ends)| Some((name.clone(), range(ends)?))).collect()
     }
 
     /// The generic rank of the least model, and which of the estimated states are unobservable.
