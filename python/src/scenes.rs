@@ -187,7 +187,7 @@ fn jointly(experiments: JointExperiments, studies: bool, times: bool, interrupt:
         return Err(Trouble::NoStudies);
     }
     let cut = || interrupt.load(Ordering::Relaxed);
-    let answer = experiments.run(&cut, &|| ());
+    let answer = experiments.run(None, &cut, &|| ());
     let seen = Seen::Joint { experiments: Box::new(experiments), answer: Box::new(answer) };
     Ok(ObservationFound { seen, times, interrupted: cut() })
 }

@@ -44,6 +44,7 @@ COMMANDS = {
         "--global": "System.global_", "--functions": "functions", "--work": "work", "--accessible": "System.accessible", "--singular-set": "System.singular_set", "--out": "SingularSet.page",
         "--reparametrise": "System.reparametrise", "--details": "*all of it is in `.json`*", "--verdicts": "run", "--verdict-states": "run",
         "--shard": "shards", "--part": "folder", "--merge": "sweep", "--missing": "cluster.missing",
+        "--accuracy": "run", "--within": "run", "--resume": "run",
     }),
     "recheck": (["recheck_file", "Claims.recheck"], {"--proofs": "proofs"}),
     "certify": (["System.certify"], {

@@ -83,13 +83,17 @@ pub(crate) struct Observe {
     /// Write the estimates sample by sample to a file, CSV or Parquet: each state with its bound.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
     pub(super) track: Option<PathBuf>,
-    /// Choose the observer, in the place of those that the scene names: filters, windows of more and more samples and all samples at once are tried until
+    /// Choose the observer, in the place of those that the scene names: filters, windows and all samples at once are tried until
     /// the standard deviation of each estimated state at the end is at most this part of its size, as in 1e-3.
     #[arg(long, value_name = "PART", value_parser = super::reduce::part, conflicts_with_all = ["within", "studies", "shard", "merge", "missing"])]
     pub(super) accuracy: Option<f64>,
     /// Choose the observer in the same way: the most accurate of those whose estimate takes at most this long, as in 20ms or 1.5s.
     #[arg(long, value_name = "TIME", value_parser = super::observe_choice::time, conflicts_with_all = ["studies", "shard", "merge", "missing"])]
     pub(super) within: Option<f64>,
+    /// Keep how far each search of a fit has come in this file, and go on from it where it is there: of scenes with several experiments. A run in several parts gives the
+    /// answer of one run.
+    #[arg(long, value_name = "FILE")]
+    pub(super) resume: Option<PathBuf>,
     #[command(flatten)]
     pub(super) shards: Shards,
     /// Print no times: two runs with one seed on one machine then write the same to the last byte, as a merge does, which has no times.
@@ -117,16 +121,19 @@ impl Observe {
     fn work(self, kept: &KeptSlow) -> miette::Result<Status> {
         if let Some(space) = SpaceScene::read(&self.scene) {
             self.has_no_choice("a body in space")?;
+            self.searches_little()?;
             return self.run_space(space?);
         }
         if let Some(slow) = SlowScene::read(&self.scene) {
             self.has_no_choice("a body that is moved slowly")?;
+            self.searches_little()?;
             return self.run_slow(slow?, kept);
         }
         if let Some(joint) = JointScene::read(&self.scene) {
             self.has_no_choice("a scene with several experiments")?;
             return self.run_joint(joint?);
         }
+        self.searches_little()?;
         let mut scene = read_scene(&self.scene)?;
         scene.seed = self.seed.unwrap_or(scene.seed);
         let from = self.data.as_deref().or(scene.data.record.as_deref());

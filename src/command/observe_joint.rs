@@ -4,11 +4,14 @@ use super::interrupt::{begin_to_tell, interrupted};
 use super::observe::Observe;
 use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
-use palmistry::experiment::joint::{JointExperiments, JointScene};
+use palmistry::experiment::joint::{JointExperiments, JointScene, Keep};
+use palmistry::file::note;
+use palmistry::foreign::name_of;
 use palmistry::report::{
     JointObserved, joint_json, joint_page, joint_parameters, joint_simulation, joint_text,
 };
 use palmistry::system::Code;
+use std::sync::Arc;
 
 impl Observe {
     /// What does not go with several experiments.
@@ -34,14 +37,49 @@ impl Observe {
         }
     }
 
+    /// That searches are kept of a fit alone.
+    pub(super) fn searches_little(&self) -> miette::Result<()> {
+        match &self.resume {
+            None => Ok(()),
+            Some(_) => Err(Unusable::report(
+                Code::Option,
+                "--resume is for scenes with several experiments, whose searches take long",
+                "leave it out; studies are cut by --shard",
+            )),
+        }
+    }
+
     /// Fits several experiments at once.
     pub(super) fn run_joint(self, mut scene: JointScene) -> miette::Result<Status> {
         scene.seed = self.seed.unwrap_or(scene.seed);
         self.joint_goes_together()?;
         let experiments = JointExperiments::new(scene, self.data.as_deref())?;
+        let kept = match &self.resume {
+            None => None,
+            Some(path) => {
+                let help = "name another file, or delete it";
+                let opened = experiments.searches(path).map_err(|why| {
+                    Unusable::report(Code::Saved, format!("{}: {why}", name_of(path)), help)
+                })?;
+                let [ended, on] = opened.counts();
+                if ended + on > 0 {
+                    note(&format!(
+                        "going on from {}: {ended} searches have ended, {on} go on",
+                        name_of(path)
+                    ));
+                }
+                Some(Arc::new(opened))
+            }
+        };
+        let keep = kept.as_ref().map(|kept| Arc::clone(kept) as Arc<dyn Keep>);
         let bar = progress(experiments.count() as u64, "searching");
-        let answer = experiments.run(&interrupted, &|| bar.inc(1));
+        let answer = experiments.run(keep.as_ref(), &interrupted, &|| bar.inc(1));
         bar.finish_and_clear();
+        if let (Some(kept), Some(path)) = (&kept, &self.resume)
+            && let Some(why) = kept.close()
+        {
+            note(&format!("{} could not be written: {why}", name_of(path)));
+        }
         begin_to_tell();
         let observed =
             JointObserved { experiments: &experiments, answer: &answer, interrupted: interrupted() };

@@ -166,3 +166,109 @@ fn roots_are_zero_at_the_ends_of_their_domains() {
         assert_eq!(found.word(), expected, "{claim}: {:?}", found.verdict);
     }
 }
+
+/// The verdicts of some claims about a system of their own.
+fn words(model: &str, claims: &[(&str, &str)]) {
+    let lines: Vec<String> =
+        claims.iter().enumerate().map(|(place, (claim, _))| format!("claim {place}: {claim}\n")).collect();
+    let text = format!("system \"s\"\n{model}\n{}", lines.concat());
+    let system =
+        System::parse("s.proof", &text, Path::new("")).unwrap_or_else(|why| panic!("{why:?}\n{text}"));
+    for (outcome, (claim, expected)) in prove(&system).iter().zip(claims) {
+        assert_eq!(outcome.word(), *expected, "{model}: {claim}: {:?}", outcome.verdict);
+    }
+}
+
+/// Where the rank is zero, what is constant or measured is still observable and has one value: its differential is zero, or that of nothing unknown.
+#[test]
+fn at_rank_zero_constants_are_observable() {
+    words(
+        "state x\nparam a unknown\nparam m\ndrift f x' = x*m + a\noutput m",
+        &[
+            ("observable(x/x)", "proved"),
+            ("unobservable(x/x)", "refuted"),
+            ("observable(m*x/x)", "proved"),
+            ("unobservable(sin(x)^2 + cos(x)^2)", "refuted"),
+            ("unidentifiable(a/a)", "refuted"),
+            ("solutions(x/x) = 1", "proved"),
+            ("solutions(x/x) = infinity", "refuted"),
+            ("observable(x)", "refuted"),
+            ("unobservable(a)", "proved"),
+            ("solutions(a) = infinity", "proved"),
+            ("rank = 0", "proved"),
+        ],
+    );
+    words(
+        "state x\nknown u(t)\ndrift f x' = x*u\noutput u",
+        &[
+            ("unobservable(x*u/x)", "refuted"),
+            ("solutions(x*u/x) = infinity", "refuted"),
+            ("solutions(x/x) >= 5", "refuted"),
+            ("unobservable(x)", "proved"),
+        ],
+    );
+    words(
+        "state x, y\ndrift f others' = 0\noutput x^2*y",
+        &[("observable(y/y) where x = 0", "proved"), ("unobservable(y) where x = 0", "proved")],
+    );
+    words(
+        "state x\nparam a unknown\ndrift f x' = x\noutput x\ninitial x known",
+        &[
+            ("solutions(x) = infinity", "refuted"),
+            ("solutions(x^2) = 1", "proved"),
+            ("observable(x + 1)", "proved"),
+            ("solutions(a) = infinity", "proved"),
+        ],
+    );
+}
+
+/// Solutions are counted at almost all states at which all is smooth: where there is no open set of these nothing is counted. By hand: at m = 0 every `a` has the same
+/// outputs, and with m = n there is one `b`.
+#[test]
+fn nothing_is_counted_on_thin_and_empty_domains() {
+    for (model, claims) in [
+        (
+            "state x\nparam a unknown\nparam m\ndrift f x' = a*m*x\noutput x, sqrt(m) + sqrt(-m)",
+            &["solutions(a) < infinity", "solutions(a) = infinity"][..],
+        ),
+        (
+            "state x, y\nparam k, a unknown\ndrift f x' = k + a*(x - y) y' = k\noutput x, y, sqrt(x - y) + sqrt(y - x)",
+            &["solutions(a) < infinity"],
+        ),
+        (
+            "state x\nparam a, b, c unknown\nparam m, n\ndrift f x' = a*(m - n)*x + b + sqrt(m - n)*c + sqrt(n - m)*c^2\noutput x",
+            &["solutions(b) = 1", "solutions(b) = infinity"],
+        ),
+        (
+            "state x\nparam a, b unknown\ndrift f x' = a*x\noutput x",
+            &["solutions(log(-1 - b^2)) = infinity", "solutions(log(-1 - a^2)) = 1"],
+        ),
+        ("state x\nparam a, b unknown\ndrift f x' = a*x + log(-1 - b^2)\noutput x", &["solutions(a) = 1"]),
+        ("state x, y\ndrift f x' = 0 y' = y\noutput y\ninitial x = 0", &["solutions(y/x) >= 1"]),
+    ] {
+        let undecided: Vec<(&str, &str)> = claims.iter().map(|claim| (*claim, "undecided")).collect();
+        words(model, &undecided);
+    }
+    // an open domain is none of these
+    words(
+        "state x\nparam a, m unknown\ndrift f x' = a*sqrt(m)*x\noutput x, m\nassume m > 0",
+        &[("solutions(a) = 1", "proved"), ("solutions(sqrt(m)) < infinity", "proved")],
+    );
+    for text in [
+        "state x param a unknown param m drift f x' = a*m*x output x, sqrt(m) + sqrt(-m)",
+        "state x param a, b unknown drift f x' = a*b*x + log(-1 - x^2) output x",
+    ] {
+        let mut system: System = format!("system \"s\" {text}").parse().unwrap();
+        let why = answer_rank(&mut system, &RankQuestion { samples: 0, ..RankQuestion::default() });
+        let why = why.map(|answer| answer.branches.len()).unwrap_err().to_string();
+        assert!(why.contains("outputs and rates"), "{why}");
+        let counted = palmistry::answer_solutions(
+            &mut system,
+            palmistry::sweep::SolutionsWanted::Values,
+            1_000_000,
+            &Default::default(),
+        );
+        let why = counted.map(|answer| answer.is_final()).unwrap_err().to_string();
+        assert!(why.contains("outputs and rates"), "{why}");
+    }
+}

@@ -288,3 +288,53 @@ fn a_paper_may_have_experiments() {
     let page = std::fs::read_to_string(out.join("index.html")).unwrap();
     assert!(page.contains("Experiments fitted together") && page.contains("measured, large"));
 }
+
+/// A fit whose searches are kept: the answer of one run, whatever part of them was there before; what is in the file is looked at.
+#[test]
+fn a_fit_goes_on_where_it_was() {
+    let folder = folder();
+    let problem = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("examples/petab/Perelson_Science1996/Perelson_Science1996.yaml");
+    let scene = folder.path().join("p.toml");
+    let imported = palmistry(&["import", problem.to_str().unwrap(), "--out", scene.to_str().unwrap()]);
+    assert!(imported.status.success(), "{}", String::from_utf8_lossy(&imported.stderr));
+    let text = std::fs::read_to_string(&scene).unwrap() + "\n[search]\nstarts = 4\n";
+    std::fs::write(&scene, text).unwrap();
+    let (scene, kept) = (scene.to_str().unwrap(), folder.path().join("searches"));
+    let run = |options: &[&str]| {
+        let mut all = vec!["observe", scene, "--json", "--no-times"];
+        all.extend(options);
+        palmistry(&all)
+    };
+    let resume = ["--resume", kept.to_str().unwrap()];
+    let (plain, first) = (run(&[]), run(&resume));
+    assert!(plain.status.success() && first.stdout == plain.stdout);
+    // of a run that was cut off
+    let whole = std::fs::read_to_string(&kept).unwrap();
+    assert!(whole.lines().count() > 5, "{whole}");
+    let part: Vec<&str> = whole.lines().take(3).collect();
+    std::fs::write(&kept, part.join("\n")).unwrap();
+    let again = run(&resume);
+    assert!(again.stdout == plain.stdout);
+    let told = String::from_utf8_lossy(&again.stderr).into_owned();
+    assert!(told.contains("2 searches have ended, 0 go on"), "{told}");
+    assert_eq!(std::fs::read_to_string(&kept).unwrap(), whole);
+    // of another question, damaged, no such file
+    let line = whole.lines().nth(1).unwrap();
+    for (text, seed, needle) in [
+        (whole.clone(), "9", "another question"),
+        ("time,x\n0,1\n".to_owned(), "1", "no file of searches"),
+        (whole.replacen(line, &line[..line.len() / 2], 1), "1", "line 2 of it is damaged"),
+        (whole.replacen(line, &format!("{line},7ff0000000000000"), 1), "1", "line 2 of it is damaged"),
+    ] {
+        std::fs::write(&kept, &text).unwrap();
+        let output = run(&[&resume[..], &["--seed", seed]].concat());
+        let told = String::from_utf8_lossy(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(output.status.code() == Some(2) && told.contains(needle), "{told}");
+        assert_eq!(std::fs::read_to_string(&kept).unwrap(), text, "nothing of it is lost");
+    }
+    let other =
+        palmistry(&["observe", "examples/systems/two_tanks.toml", "--resume", kept.to_str().unwrap()]);
+    let told = String::from_utf8_lossy(&other.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(other.status.code() == Some(2) && told.contains("several experiments"), "{told}");
+}

@@ -218,3 +218,39 @@ fn parts_by_sign_have_ranks_of_their_own() {
     assert!(branch.whole.at_least <= 1, "{:?}", branch.whole);
     assert!(branch.sampled.as_ref().unwrap().rank_histogram.len() == 2);
 }
+
+/// Inequalities that leave a set of fewer dimensions, or nothing, and fields that exist on such a set alone.
+#[test]
+fn thin_sets_of_inequalities_and_domains() {
+    let text = "system \"s\" state x, y drift f x' = y y' = 0 input g x' = y y' = 0 output x";
+    for (condition, ranks) in [
+        ("y = 0", Some([0, 0])),
+        ("y >= 0, y <= 0", Some([0, 0])),
+        ("y^2 <= 0", Some([0, 0])),
+        ("x^2 + y^2 <= 0", Some([0, 0])),
+        ("y >= 1", Some([1, 1])),
+        ("y > 1, y < 0", None),
+    ] {
+        let mut system: System = text.parse().unwrap();
+        let conditions = vec![condition.to_owned()];
+        let question = RankQuestion { samples: 0, conditions, ..RankQuestion::default() };
+        let found = answer_accessibility(&mut system, &question);
+        let found = found.ok().map(|answer| {
+            let branch = &answer.branches[0];
+            [branch.whole, branch.strong].map(|bounds| bounds.rank().unwrap())
+        });
+        assert_eq!(found, ranks, "{condition}");
+    }
+    let assumed = "system \"s\" state x, y param m drift f x' = y*m y' = 0 input g x' = y*m y' = 0 output x assume m >= 0, m <= 0";
+    assert_eq!(only(assumed).whole.rank(), Some(0));
+    for drift in ["m*y + sqrt(m) + sqrt(-m)", "m*y + log(-1 - y^2)"] {
+        let text = format!(
+            "system \"s\" state x, y param m drift f x' = {drift} y' = 0 input g x' = 0 y' = 1 output x"
+        );
+        let mut system: System = text.parse().unwrap();
+        let question = RankQuestion { samples: 0, ..RankQuestion::default() };
+        let why =
+            answer_accessibility(&mut system, &question).map(|answer| answer.branches.len()).unwrap_err();
+        assert!(why.to_string().contains("derivatives"), "{why}");
+    }
+}

@@ -311,3 +311,21 @@ fn the_command_advises() {
     let output = palmistry(&["advise", file, "--identify", "a", "--measure", "x +", "--measure", "y"]);
     assert!(String::from_utf8_lossy(&output.stdout).contains("left out: measure x +"), "{output:?}");
 }
+
+/// What is assumed leaves no open set of states, or outputs and rates exist on none: nothing is advised.
+#[test]
+fn nothing_is_advised_on_a_thin_set() {
+    for text in [
+        "state x param a unknown param m drift f x' = a*m*x output x assume m >= 0, m <= 0",
+        "state x param a unknown param m drift f x' = a*m*x output x, sqrt(m) + sqrt(-m)",
+    ] {
+        let never = AtomicBool::new(false);
+        let question =
+            DesignQuestion { targets: vec!["a".to_owned()], ..DesignQuestion::of(Path::new(""), &never) };
+        let why = design(&read(text), &question).map(|answer| answer.is_met).unwrap_err().to_string();
+        assert!(why.contains("what is assumed is met"), "{why}");
+    }
+    let open =
+        sets("state x param a unknown param m drift f x' = a*m*x output x assume m > 0", &["a"], |_| ());
+    assert!(open.is_empty());
+}

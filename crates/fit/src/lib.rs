@@ -8,6 +8,7 @@
 
 #![warn(missing_docs)]
 
+mod checkpoint;
 mod compiled;
 mod information;
 mod laws;
@@ -19,6 +20,7 @@ mod simulate;
 mod steady;
 mod trust;
 
+pub use checkpoint::{Keep, SearchState};
 pub use information::{Information, WeakDirection};
 pub use laws::{ErrorLaw, ErrorScale, ParameterScale, Prior, PriorLaw};
 pub use likelihood::{Likelihood, SimulatedExperiments};

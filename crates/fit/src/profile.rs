@@ -69,7 +69,14 @@ pub fn profile(
             let mut start = place.clone();
             start[parameter] = if step >= left { end } else { place[parameter] + sign * step };
             let reached = likelihood.at(&start, Exactness::Answer, &|| interrupted()).ok().map(|here| {
-                search(likelihood, &start, here, &[parameter], (STEPS, Exactness::Answer), interrupted)
+                search(
+                    likelihood,
+                    &start,
+                    Some(here),
+                    &[parameter],
+                    (STEPS, Exactness::Answer, None),
+                    interrupted,
+                )
             });
             let Some(reached) = reached.filter(|reached| reached.end != StartEnd::Interrupted) else {
                 step /= 4.0;

@@ -1,5 +1,6 @@
 //! The largest likelihood, from many starts.
 
+use super::checkpoint::{Keep, Kept, SearchCheckpoint};
 use super::information::Information;
 use super::likelihood::{Likelihood, SimulatedExperiments};
 use super::simulate::{Exactness, NotFollowed};
@@ -10,6 +11,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Every other search begins at the best of so many draws that can be simulated, the others at the first one: the best draw is often one at which nothing
 /// happens that could be measured, and from there nothing is found.
@@ -130,23 +132,26 @@ impl JointFit {
 }
 
 /// Searches from random starts within the bounds, evenly on the scales of the parameters; one start with one seed is the same on any number of threads.
-/// Where the nominal values explain more than any of them comes to, a search begins there too.
+/// Where the nominal values explain more than any of them comes to, a search begins there too. Searches that are kept go on from where they came to, with the
+/// same answer as in one run.
 ///
 /// # Errors
 /// Why none of the starts could be simulated.
 pub fn fit(
     likelihood: &Likelihood,
-    starts: usize,
-    steps: u64,
-    seed: u64,
+    (starts, steps, seed): (usize, u64, u64),
+    keep: Option<&Arc<dyn Keep>>,
     interrupted: &(dyn Fn() -> bool + Sync),
     done: &(dyn Fn() + Sync),
 ) -> Result<JointFit, String> {
+    let kept = |number: usize| keep.map(|keep| Kept { keep: Arc::clone(keep), number });
     let one = |number: usize| {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         random.set_stream(number as u64);
         let wanted = if number.is_multiple_of(2) { 1 } else { CANDIDATES };
-        let found = from_draws(likelihood, &mut random, (steps, wanted), interrupted);
+        let found = going_on(likelihood, kept(number), steps, interrupted, |kept| {
+            from_draws(likelihood, &mut random, (steps, wanted), kept, interrupted)
+        });
         done();
         found
     };
@@ -156,15 +161,25 @@ pub fn fit(
         && let Ok(here) = likelihood.at(&place, Exactness::Search, &|| interrupted())
         && least(&searches).is_none_or(|best| here.objective < best.objective - SAME)
     {
-        searches.push(search(likelihood, &place, here, &[], (steps, Exactness::Search), interrupted));
+        searches.push(search(
+            likelihood,
+            &place,
+            Some(here),
+            &[],
+            (steps, Exactness::Search, None),
+            interrupted,
+        ));
     }
     for round in 0..ROUNDS {
         let Some(best) = least(&searches).filter(|_| !interrupted()) else { break };
         let (objective, found) = (best.objective, best.found.clone());
         let one = |number: usize| {
+            let number = starts + round * KICKS + number;
             let mut random = ChaCha8Rng::seed_from_u64(seed);
-            random.set_stream((starts + round * KICKS + number) as u64);
-            from_near(likelihood, &mut random, &found, steps, interrupted)
+            random.set_stream(number as u64);
+            going_on(likelihood, kept(number), steps, interrupted, |kept| {
+                from_near(likelihood, &mut random, &found, (steps, kept), interrupted)
+            })
         };
         let kicked: Vec<SearchEnd> = (0..KICKS).into_par_iter().map(one).collect();
         let is_better = kicked.iter().any(|one| one.objective < objective - SAME);
@@ -174,6 +189,29 @@ pub fn fit(
         }
     }
     best_of(likelihood, (searches, starts), interrupted)
+}
+
+/// A search that was kept goes on, or is what it was; else it begins.
+fn going_on(
+    likelihood: &Likelihood,
+    kept: Option<Kept>,
+    steps: u64,
+    interrupted: &(dyn Fn() -> bool + Sync),
+    begin: impl FnOnce(Option<&Kept>) -> SearchEnd,
+) -> SearchEnd {
+    if let Some(ended) = kept.as_ref().and_then(Kept::ended) {
+        return ended;
+    }
+    let found = match kept.as_ref().and_then(Kept::begun) {
+        Some(start) => {
+            search(likelihood, &start, None, &[], (steps, Exactness::Search, kept.as_ref()), interrupted)
+        }
+        None => begin(kept.as_ref()),
+    };
+    if let Some(kept) = &kept {
+        kept.end(&found);
+    }
+    found
 }
 
 /// Whether a place lies within the bounds.
@@ -195,7 +233,7 @@ fn from_near(
     likelihood: &Likelihood,
     random: &mut ChaCha8Rng,
     place: &[f64],
-    steps: u64,
+    (steps, kept): (u64, Option<&Kept>),
     interrupted: &(dyn Fn() -> bool + Sync),
 ) -> SearchEnd {
     let mut why = String::new();
@@ -214,7 +252,7 @@ fn from_near(
             (place + normal * size * unit).clamp(low, high)
         };
         let start: Vec<f64> = likelihood.problem().parameters.iter().zip(place).map(kicked).collect();
-        match search_from(likelihood, start, steps, interrupted) {
+        match search_from(likelihood, start, (steps, kept), interrupted) {
             Ok(found) => return found,
             Err(error) => why = error,
         }
@@ -243,7 +281,14 @@ fn best_of(
                 continue;
             }
         };
-        let last = search(likelihood, &best.found, here, &[], (LAST_STEPS, Exactness::Answer), interrupted);
+        let last = search(
+            likelihood,
+            &best.found,
+            Some(here),
+            &[],
+            (LAST_STEPS, Exactness::Answer, None),
+            interrupted,
+        );
         let simulated = match simulate(&last.found) {
             Ok(simulated) => simulated,
             Err(why) => {
@@ -272,6 +317,7 @@ fn from_draws(
     likelihood: &Likelihood,
     random: &mut ChaCha8Rng,
     (steps, wanted): (u64, usize),
+    kept: Option<&Kept>,
     interrupted: &(dyn Fn() -> bool + Sync),
 ) -> SearchEnd {
     let parameters = &likelihood.problem().parameters;
@@ -295,7 +341,7 @@ fn from_draws(
     }
     candidates.sort_by(|one, other| one.1.total_cmp(&other.1));
     for (start, _) in candidates {
-        match search_from(likelihood, start, steps, interrupted) {
+        match search_from(likelihood, start, (steps, kept), interrupted) {
             Ok(found) => return found,
             Err(error) => why = error,
         }
@@ -307,11 +353,13 @@ fn from_draws(
 fn search_from(
     likelihood: &Likelihood,
     start: Vec<f64>,
-    steps: u64,
+    (steps, kept): (u64, Option<&Kept>),
     interrupted: &(dyn Fn() -> bool + Sync),
 ) -> Result<SearchEnd, String> {
     match likelihood.at(&start, Exactness::Search, &|| interrupted()) {
-        Ok(here) => Ok(search(likelihood, &start, here, &[], (steps, Exactness::Search), interrupted)),
+        Ok(here) => {
+            Ok(search(likelihood, &start, Some(here), &[], (steps, Exactness::Search, kept), interrupted))
+        }
         Err(NotFollowed::Interrupted) => Ok(ended(start, StartEnd::Interrupted)),
         Err(error) => Err(error.to_string()),
     }
@@ -321,13 +369,13 @@ fn ended(start: Vec<f64>, end: StartEnd) -> SearchEnd {
     SearchEnd { found: start.clone(), start, objective: f64::INFINITY, steps: 0, end }
 }
 
-/// A search from a start whose simulation is known, with some parameters fixed at their places.
+/// A search from a start, with some parameters fixed at their places. Where the simulation there is not given, the search goes on from what is kept.
 pub(super) fn search(
     likelihood: &Likelihood,
     start: &[f64],
-    here: SimulatedExperiments,
+    here: Option<SimulatedExperiments>,
     held: &[usize],
-    (steps, exactness): (u64, Exactness),
+    (steps, exactness, kept): (u64, Exactness, Option<&Kept>),
     interrupted: &(dyn Fn() -> bool + Sync),
 ) -> SearchEnd {
     let parameters = &likelihood.problem().parameters;
@@ -336,12 +384,19 @@ pub(super) fn search(
         false => one.scaled_bounds(),
     });
     let problem = Search { likelihood, bounds: bounds.collect(), exactness, interrupted };
-    let objective = here.objective;
-    let run = Executor::new(problem, Scoring::from(here))
+    let objective = here.as_ref().map_or(f64::INFINITY, |here| here.objective);
+    let solver = here.map_or_else(Scoring::default, Scoring::from);
+    let mut executor = Executor::new(problem, solver)
         .configure(|state| state.param(DVector::from_column_slice(start)).cost(objective).max_iters(steps))
-        .ctrlc(false)
-        .run();
-    match run {
+        .ctrlc(false);
+    if let Some(kept) = kept {
+        executor = executor.checkpointing(SearchCheckpoint {
+            kept: kept.clone(),
+            start: start.to_vec(),
+            most: steps,
+        });
+    }
+    match executor.run() {
         Ok(result) => {
             let end = match (result.solver.converged, result.solver.stuck) {
                 (true, _) => StartEnd::Converged,

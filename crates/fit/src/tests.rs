@@ -9,6 +9,8 @@ use palmistry_lang::System;
 use palmistry_math::expression::NodeId;
 use std::path::Path;
 
+mod resumed;
+
 const NEVER: fn() -> bool = || false;
 
 /// What is measured: experiment, output, time, value, size.
@@ -444,7 +446,7 @@ fn the_truth_is_found_on_any_number_of_threads() {
     let likelihood = made.likelihood();
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| fit(&likelihood, 6, 200, 1, &NEVER, &|| ()).unwrap())
+        pool.install(|| fit(&likelihood, (6, 200, 1), None, &NEVER, &|| ()).unwrap())
     };
     let (one, three) = (run(1), run(3));
     assert_eq!(one.best().found, three.best().found);
@@ -473,7 +475,7 @@ fn ends_that_explain_as_much_lie_apart() {
         rows: &rows,
         clock: None,
     };
-    let found = fit(&made.likelihood(), 12, 200, 1, &NEVER, &|| ()).unwrap();
+    let found = fit(&made.likelihood(), (12, 200, 1), None, &NEVER, &|| ()).unwrap();
     let information = Information::of(&found.simulated, &[false; 3]);
     let apart = found.apart(&information);
     assert!(!apart.is_empty());
@@ -506,7 +508,7 @@ fn profiles_of_a_line_are_parabolas() {
         clock: None,
     };
     let likelihood = made.likelihood();
-    let found = fit(&likelihood, 4, 100, 1, &NEVER, &|| ()).unwrap();
+    let found = fit(&likelihood, (4, 100, 1), None, &NEVER, &|| ()).unwrap();
     let information = Information::of(&found.simulated, &[false, false]);
     let n = times.len() as f64;
     let (sum, square): (f64, f64) = (times.iter().sum(), times.iter().map(|t| t * t).sum());

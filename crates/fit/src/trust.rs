@@ -72,6 +72,16 @@ impl Scoring {
         Scoring { lambda: FIRST, growth: 2.0, here: Some(here), ..Scoring::default() }
     }
 
+    /// A search that goes on with this damping and its growth; what is known of the place is computed anew.
+    pub fn with_damping([lambda, growth]: [f64; 2]) -> Scoring {
+        Scoring { lambda, growth, ..Scoring::default() }
+    }
+
+    /// The damping, and its growth.
+    pub fn damping(&self) -> [f64; 2] {
+        [self.lambda, self.growth]
+    }
+
     /// The step with this damping.
     fn step(
         &self,

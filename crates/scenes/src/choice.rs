@@ -1,7 +1,7 @@
 //! The cheapest observer that is accurate enough, or the most accurate one within a time.
 //!
-//! Filters, windows of more and more samples, and all samples at once are tried on the measurements themselves, in the order of what they cost as a rule. An
-//! accuracy is the largest standard deviation of an estimated state at the last sample, in units of the size of that state; only an answer that passes its test of
+//! Filters, two windows of half of the samples, all samples at once, and windows of fewer and fewer samples are tried on the measurements themselves, in the order of
+//! what they cost as a rule: each window begins a search of its own, short ones tell less, and the search for all samples grows to them. An accuracy is the largest standard deviation of an estimated state at the last sample, in units of the size of that state; only an answer that passes its test of
 //! fit has one. Newton's method is left out, since the region of trust takes the same steps where these are good; so are the plain integration, which has no
 //! deviations, and the high-gain observer, whose gain has to be chosen.
 
@@ -133,13 +133,14 @@ impl Experiment {
         let samples = self.signals.times().len();
         let outputs = task.full.outputs.len().max(1);
         let mut window = (FEWEST * task.full.states.len()).div_ceil(outputs).max(FEWEST_SAMPLES);
-        let mut found = filters.to_vec();
+        let mut windows = Vec::new();
         while 2 * window < samples {
-            found.push((by_windows, Some(window)));
+            windows.push((by_windows, Some(window)));
             window *= 2;
         }
-        found.push((by_windows, None));
-        Ok(found)
+        windows.reverse();
+        windows.insert(windows.len().min(1), (by_windows, None));
+        Ok(filters.into_iter().chain(windows).collect())
     }
 
     /// The scene's first method, tried.

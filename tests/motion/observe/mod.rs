@@ -8,6 +8,7 @@ mod advice_space;
 mod bars;
 mod broken;
 mod channels;
+mod choice;
 mod circular;
 mod coefficients;
 mod columns;

@@ -359,7 +359,8 @@ fn attempt(
         notes.evidence.push(kept);
         let text = |expr: &Expr| in_one_line(&system.source, &expr.span);
         let name = text(if asked.is_left { &equation.left } else { &equation.right });
-        return decide_solutions(system, statement, &asked, name);
+        smooth(&mut guards);
+        return decide_solutions(system, statement, &asked, name, &guards);
     }
     if matches!(left, Value::Pole { .. }) || matches!(right, Value::Pole { .. }) {
         let terms = Terms { guards, ..Terms::default() };

@@ -9,9 +9,10 @@ use super::verdict::{Verdict, Witness};
 use palmistry_io::UNINTERRUPTED;
 use palmistry_lang::{Statement, System, Value};
 use palmistry_math::expression::syntax::Relation;
-use palmistry_math::expression::{LOG2_ERROR, Node, NodeId};
+use palmistry_math::expression::{Guard, LOG2_ERROR, Node, NodeId};
 use palmistry_rank::observability::{
-    Observability, Solutions, SolutionsOf, SolutionsQuestion, solutions, solve_conditions,
+    Observability, SmoothPart, Solutions, SolutionsOf, SolutionsQuestion, smooth_part, solutions,
+    solve_conditions,
 };
 
 /// As much work a claim may be, in products of residues.
@@ -90,7 +91,7 @@ struct Proved {
     log2_error: f64,
 }
 
-/// Decides such a claim.
+/// Decides such a claim, of an expression that needs these guards.
 ///
 /// # Errors
 /// In words, where the number cannot be computed.
@@ -99,6 +100,7 @@ pub(super) fn decide_solutions(
     statement: &Statement,
     asking: &Asking,
     name: String,
+    guards: &[Guard],
 ) -> Result<Verdict, String> {
     if !statement.conditions.is_empty() || statement.on_sample || statement.except.is_some() {
         return Err("solutions are counted generically: such a claim takes no conditions".to_owned());
@@ -117,6 +119,11 @@ pub(super) fn decide_solutions(
         );
     };
     let branch = branch.clone().tied_by_outputs(system).map_err(|why| why.to_string())?;
+    // what is counted holds at almost all states at which all of it is smooth: there have to be some
+    match smooth_part(system, &branch, &branch.values.clone(), guards)? {
+        SmoothPart::Open => {}
+        SmoothPart::Thin(why) | SmoothPart::NotShown(why) => return Err(why),
+    }
     // of an unknown its own values are counted: those of an angle up to whole turns
     let unknown = match system.graph.node(asking.expression) {
         Node::Symbol(symbol) => system.unknowns().iter().position(|unknown| *unknown == symbol),

@@ -11,13 +11,14 @@ mod search;
 mod variant;
 
 use crate::observability::{
-    CodistributionError, Frame, Observability, SOLUTIONS_WORK, Solutions, SolutionsQuestion, solutions,
-    solve_conditions,
+    CodistributionError, Frame, Observability, SOLUTIONS_WORK, SmoothPart, Solutions, SolutionsQuestion,
+    parse_condition, smooth_part, solutions, solve_conditions,
 };
 use crate::sweep::{RankQuestion, held_conditions, held_parameters, named_unknowns};
 use dashu::rational::RBig;
 use palmistry_budget::{Allowance, OF_A_QUESTION, paid};
 use palmistry_lang::{Assignment, System, Time, UnknownKind};
+use palmistry_math::expression::Guard;
 use search::{Search, Sets};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -394,6 +395,21 @@ impl Judge<'_> {
         };
         // parameters have the values that they have for the rank
         let conditions = held_conditions(&mut system, &RankQuestion::default(), branch);
+        // what is assumed has to leave an open set of states, since all that is said is of almost all states
+        let mut assumed = Vec::new();
+        for text in system.assumptions() {
+            assumed.extend(parse_condition(&text).map_err(DesignError::Question)?);
+        }
+        let assumed: Vec<Guard> = solve_conditions(&mut system, &assumed)
+            .map_err(|why| DesignError::Question(why.to_string()))?
+            .into_iter()
+            .flat_map(|branch| branch.guards)
+            .collect();
+        if let SmoothPart::Thin(why) =
+            smooth_part(&mut system, branch, &conditions, &assumed).map_err(DesignError::Question)?
+        {
+            return Err(DesignError::Question(why));
+        }
         let generic = Frame::new(&mut system, &conditions)?.generic;
         let seen = |name: &String| {
             let of_it = generic.unknowns.iter().find(|(symbol, _)| system.symbol_name(*symbol) == name);

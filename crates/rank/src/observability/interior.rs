@@ -10,7 +10,7 @@
 use super::conditions::{Branch, vanishes};
 use dashu::rational::RBig;
 use palmistry_inequality::{Given, InequalityAnswer, Proposed, bounds, decide, holds_by_signs};
-use palmistry_lang::System;
+use palmistry_lang::{Assignment, System};
 use palmistry_math::expression::{Graph, Guard, Need, Node, NodeId, Program, Sign, Symbol, sign};
 use palmistry_math::number::{Enclosures, Function, rational_from_f64};
 use rand::{RngExt, SeedableRng};
@@ -99,6 +99,49 @@ pub fn interior(system: &mut System, branch: &Branch, guards: &[Guard]) -> Resul
         (None, Some(edges)) => Interior::Open(edges),
         (Some(words), _) => Interior::NotKnown(words),
         (None, None) => Interior::NotKnown(in_words(system, &all)),
+    })
+}
+
+/// Where the outputs and rates of a system, and what else is asked about, have derivatives of all orders.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SmoothPart {
+    /// On an open part of the branch: what holds at almost all of its states speaks of some.
+    Open,
+    /// Nowhere, or on a set of fewer dimensions: what holds at almost all states of the branch says nothing of it. Why, in words.
+    Thin(String),
+    /// It is not known; this is needed.
+    NotShown(String),
+}
+
+/// Where the outputs and the rates of all fields that move have derivatives of all orders on a branch, with values that are held, and where further guards hold.
+///
+/// # Errors
+/// In words, where a guard distinguishes what the conditions leave open.
+pub fn smooth_part(
+    system: &mut System,
+    branch: &Branch,
+    held: &Assignment,
+    further: &[Guard],
+) -> Result<SmoothPart, String> {
+    let mut guards = system.smooth_guards(&system.moving_fields());
+    guards.extend(branch.guards.iter().chain(further));
+    let guards = system.substitute_guards(&guards, held);
+    Ok(match interior(system, branch, &guards)? {
+        Interior::Open(_) => SmoothPart::Open,
+        Interior::Empty(guard) => SmoothPart::Thin(format!(
+            "there is no state at which outputs and rates have all derivatives and what is assumed is met: that needs {guard}"
+        )),
+        Interior::Flat(vanishing) => {
+            let equations: Vec<String> =
+                vanishing.iter().map(|node| format!("{} = 0", system.graph.text(*node))).collect();
+            SmoothPart::Thin(format!(
+                "outputs and rates have all derivatives, and what is assumed is met, on no open set of states, but only where {}",
+                equations.join(", ")
+            ))
+        }
+        Interior::NotKnown(words) => SmoothPart::NotShown(format!(
+            "no state was found at which outputs and rates have all derivatives and what is assumed is met: that needs {words}"
+        )),
     })
 }
 

@@ -62,7 +62,7 @@ pub use generic::{
 };
 pub(crate) use generic::{OutputRows, Rows};
 #[doc(hidden)]
-pub use interior::{Interior, interior};
+pub use interior::{Interior, SmoothPart, interior, smooth_part};
 #[doc(hidden)]
 pub use kinks::{KinkRows, rows_at_kinks};
 #[doc(hidden)]

@@ -2,6 +2,7 @@
 
 use super::asked::{RankQuestion, held_conditions};
 use super::certainty::Certainty;
+use super::left::left_by_inequalities;
 use super::paid::paid_on_a_copy;
 use super::prepared::sweep;
 use super::question::{RankError, guarded, held_parameters};
@@ -122,6 +123,7 @@ pub fn answer_accessibility_telling(
         equations.extend(parse_condition(text).map_err(RankError::Condition)?);
     }
     let branches = solve_conditions(system, &equations)?;
+    let branches = left_by_inequalities(system, question, branches)?;
     let columns = Accessibility::columns_of(system);
     let mut answer = AccessibilityAnswer {
         file: system.name.clone(),

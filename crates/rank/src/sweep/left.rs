@@ -2,12 +2,12 @@
 
 use super::asked::{RankQuestion, held_conditions};
 use super::question::RankError;
-use crate::observability::{Branch, Interior, Unsolved, interior};
+use crate::observability::{Branch, Interior, SmoothPart, Unsolved, interior, smooth_part};
 use palmistry_lang::System;
 use palmistry_math::expression::Guard;
 
 /// The branches, those on which inequalities can hold with equality only as the sets on which they do, and without those on which they hold
-/// nowhere.
+/// nowhere, or outputs and rates are defined nowhere.
 ///
 /// # Errors
 /// Where nothing remains, or such a set cannot be solved; and where it is not known what remains, if no state is to be drawn.
@@ -18,12 +18,17 @@ pub(super) fn left_by_inequalities(
 ) -> Result<Vec<Branch>, RankError> {
     let (mut open, mut found): (Vec<Branch>, Vec<Branch>) = (branches, Vec::new());
     open.reverse();
+    let mut undefined = None;
     while let Some(branch) = open.pop() {
+        let held = held_conditions(system, question, &branch);
         if branch.assumed.is_empty() {
-            found.push(branch);
+            // where nothing is smooth, what holds at almost all states of the branch says nothing
+            match smooth_part(system, &branch, &held, &[]).map_err(RankError::Condition)? {
+                SmoothPart::Thin(why) => undefined = Some(why),
+                SmoothPart::Open | SmoothPart::NotShown(_) => found.push(branch),
+            }
             continue;
         }
-        let held = held_conditions(system, question, &branch);
         let smooth = system.smooth_guards(&system.moving_fields());
         let guards: Vec<Guard> = branch.guards.iter().chain(&smooth).copied().collect();
         let guards = system.substitute_guards(&guards, &held);
@@ -43,5 +48,9 @@ pub(super) fn left_by_inequalities(
             }
         }
     }
-    if found.is_empty() { Err(Unsolved::NeverTogether.into()) } else { Ok(found) }
+    match (found.is_empty(), undefined) {
+        (false, _) => Ok(found),
+        (true, Some(why)) => Err(RankError::Condition(why)),
+        (true, None) => Err(Unsolved::NeverTogether.into()),
+    }
 }

@@ -5,8 +5,8 @@ use super::paid::paid_for_memory;
 use super::question::{RankError, held_parameters, named_unknowns};
 use super::{Certainty, RankQuestion};
 use crate::observability::{
-    Branch, CodistributionError, IdentifiableFunctions, Solutions, SolutionsAnswer, SolutionsOf,
-    SolutionsQuestion, identifiable_functions, solutions_telling, solve_conditions,
+    Branch, CodistributionError, IdentifiableFunctions, SmoothPart, Solutions, SolutionsAnswer, SolutionsOf,
+    SolutionsQuestion, identifiable_functions, smooth_part, solutions_telling, solve_conditions,
 };
 use dashu::rational::RBig;
 use palmistry_lang::System;
@@ -118,12 +118,14 @@ pub fn answer_solutions_telling(
     let asked =
         RankQuestion { samples: 0, wanted: Certainty::Computed, interrupt, ..RankQuestion::default() };
     let held = held_parameters(system, &asked, &branch.values, std::iter::empty());
-    let question = SolutionsQuestion {
-        conditions: held_conditions(system, &asked, branch),
-        expressions: Vec::new(),
-        work,
-        interrupt,
-    };
+    let conditions_held = held_conditions(system, &asked, branch);
+    if let SmoothPart::Thin(why) =
+        smooth_part(system, branch, &conditions_held, &[]).map_err(RankError::Condition)?
+    {
+        return Err(RankError::Condition(why));
+    }
+    let question =
+        SolutionsQuestion { conditions: conditions_held, expressions: Vec::new(), work, interrupt };
     let kinds = named_unknowns(system);
     let blank = GlobalAnswer {
         file: system.name.clone(),

@@ -4,12 +4,15 @@
 //! settings of each experiment into the model's equations, and [`JointExperiments`] fits all of it at once.
 
 mod built;
+mod checkpoint;
 mod keys;
 mod rows;
 mod run;
 mod unused;
 
+pub use checkpoint::SearchFile;
 pub use keys::JointScene;
+pub use palmistry_fit::Keep;
 pub use run::{GoodnessOfFit, JointAnswer, JointExperiments, NominalAnswer};
 
 #[cfg(test)]

@@ -1,14 +1,16 @@
 //! The fit of several experiments, and how good its answer is.
 
+use super::checkpoint::{SearchFile, question};
 use super::keys::JointScene;
 use palmistry_fit::{
-    ErrorLaw, Exactness, Information, JointFit, JointProblem, Likelihood, ParameterProfile,
+    ErrorLaw, Exactness, Information, JointFit, JointProblem, Keep, Likelihood, ParameterProfile,
     SimulatedExperiments, StartEnd, fit, profile,
 };
 use palmistry_lang::ReadError;
 use palmistry_observe::exceeded_with;
 use rayon::prelude::*;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A parameter is at a bound if its distance to it is below this fraction of the range.
 const AT_BOUND: f64 = 1e-6;
@@ -126,8 +128,23 @@ impl JointExperiments {
         self.scene.starts + if self.scene.profiles { self.problem().parameters.len() } else { 0 }
     }
 
-    /// Simulates at the published values, searches from all starts, and determines which parameters are identifiable.
-    pub fn run(&self, interrupted: &(dyn Fn() -> bool + Sync), done: &(dyn Fn() + Sync)) -> JointAnswer {
+    /// The file of the searches of this fit: what is in it where it is there.
+    ///
+    /// # Errors
+    /// In words: it cannot be read, is damaged, or is of another question.
+    pub fn searches(&self, path: &Path) -> Result<SearchFile, String> {
+        let (scene, problem) = (&self.scene, self.problem());
+        let question = question(problem, (scene.starts, scene.steps, scene.seed));
+        SearchFile::open(path, question, problem.parameters.len())
+    }
+
+    /// Simulates at the published values, searches from all starts, and determines which parameters are identifiable. Searches that are kept go on.
+    pub fn run(
+        &self,
+        keep: Option<&Arc<dyn Keep>>,
+        interrupted: &(dyn Fn() -> bool + Sync),
+        done: &(dyn Fn() + Sync),
+    ) -> JointAnswer {
         let nominal = self.problem().nominal().map(|place| {
             let simulated = self
                 .likelihood
@@ -147,8 +164,13 @@ impl JointExperiments {
         if self.scene.starts == 0 {
             return answer;
         }
-        let found =
-            fit(&self.likelihood, self.scene.starts, self.scene.steps, self.scene.seed, interrupted, done);
+        let found = fit(
+            &self.likelihood,
+            (self.scene.starts, self.scene.steps, self.scene.seed),
+            keep,
+            interrupted,
+            done,
+        );
         if let Ok(found) = &found {
             let best = found.best();
             answer.at_bounds = self.at_bounds(&best.found);

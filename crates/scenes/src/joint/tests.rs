@@ -161,7 +161,7 @@ fn what_is_not_identifiable_explains_nothing() {
         scene.lines().filter(|line| !line.starts_with("e = ")).map(|line| format!("{line}\n")).collect();
     let rows = "experiment,output,time,value\none,both,0,3\none,both,1,6\none,both,2,9\none,both,4,13\none,both,8,16\n";
     let own = experiments(&scene, MODEL, rows).unwrap();
-    let answer = own.run(&|| false, &|| ());
+    let answer = own.run(None, &|| false, &|| ());
     let fit = answer.fit.unwrap().unwrap();
     assert_eq!(fit.best().end, palmistry_fit::StartEnd::Converged);
     // k, and the product

@@ -158,7 +158,7 @@ impl Observable {
                 }
             }
             Observable::Joint(experiments) => {
-                let answer = experiments.run(&|| run.stopped(), &|| ());
+                let answer = experiments.run(None, &|| run.stopped(), &|| ());
                 if !run.stopped() {
                     run.found().joint.push((*experiments, answer));
                 }

@@ -128,7 +128,7 @@ pub fn generic_answer_of(
     let mut rng = ChaCha8Rng::seed_from_u64(0x7365_7269_6573);
     let bounds = bound::rounds(&probe.equations, probe.equations.closed.len());
     let rounds = bounds.as_ref().map_or(1, |bounds| bounds.rounds);
-    // of each choice of signs the ranks of all columns, and of all but one
+    // of each choice of signs the ranks of all columns, and of all but one; at a rank of zero what is constant is still observable
     let mut best: Vec<(usize, Vec<bool>)> = Vec::new();
     let (mut closed, all) = (0, probe.equations.closed.len());
     let known_functions = functions_are_known(&probe.equations);
@@ -141,7 +141,7 @@ pub fn generic_answer_of(
             }
         };
         answer.rounds += 1;
-        best.resize(found.len(), (0, vec![false; dimension + asked.len()]));
+        best.resize(found.len(), (0, vec![true; dimension + asked.len()]));
         answer.order = found.iter().map(|here| here.order).fold(answer.order, usize::max);
         closed = found.iter().map(|here| here.closed).fold(closed, usize::max);
         // which choice of signs is which is another matter at every point
@@ -199,7 +199,7 @@ fn on_orbits(
     }
     let orbit = probe.orbit(&around, rng).ok()?;
     let bounds = bound::rounds(&probe.equations, orbit.last.iter().max().map_or(1, |most| most + 1));
-    let mut best = (0, vec![false; answer.dimension + asked.len()]);
+    let mut best = (0, vec![true; answer.dimension + asked.len()]);
     let mut answer = GenericAnswer { rounds: 0, order: 0, open: None, ..answer.clone() };
     for _ in 0..bounds.as_ref().map_or(1, |bounds| bounds.rounds) {
         let found = probe.round_up_to(&orbit.last, rng).ok()?;
