@@ -22,8 +22,10 @@ fn nothing_is_told_of_states_that_do_not_exist() {
             "system \"s\" state x, v drift f x' = v v' = {rate} output x sample x in [-1, 1] v in [-1, 1]"
         )
     };
-    let nowhere = ranks(&system("sqrt(-1 - x^2)"));
-    assert_eq!((nowhere.branches[0].full.samples, &nowhere.branches[0].deviations), (0, &None));
+    let mut nowhere: System = system("sqrt(-1 - x^2)").parse().unwrap();
+    let question = RankQuestion { samples: 40, ..RankQuestion::default() };
+    let why = answer_rank(&mut nowhere, &question).map(|answer| answer.branches.len()).unwrap_err();
+    assert!(why.to_string().contains("that needs -1 - x^2 > 0"), "{why}");
     let half = ranks(&system("log(x)"));
     let full = &half.branches[0].full;
     assert!((1..40).contains(&full.samples), "{}", full.samples);

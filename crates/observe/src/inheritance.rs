@@ -79,7 +79,9 @@ impl MovingWindow {
                 learned.is_asked |= is_asked(&update);
                 learned.sees = !is_unobservable && !matches!(update.end, UpdateEnd::Lost(_));
                 start = [&update.estimate[..], &update.outputs].concat();
-                (covariance, is_tested) = (update.covariance.clone(), update.has_tested());
+                // a deviation at a bound is that of a free unknown: the estimate is not spread so
+                let is_free = update.at_bounds.is_empty();
+                (covariance, is_tested) = (update.covariance.clone(), update.has_tested() && is_free);
                 meets = before.filter(|_| !is_grown).map(|before| (before, update.is_heir));
                 let own = own.filter(|_| update.is_heir);
                 arrival = self.learn(own.as_ref().unwrap_or(task), &update, &rows, clamped);
@@ -145,8 +147,9 @@ impl MovingWindow {
 
 impl Arrival {
     /// What the measurements of a window determine of the state at its last sample, linearised at this state at its first, with all states
-    /// free; none where differences are fewer than states, or a number is not finite.
-    fn after(window: &Window<'_>, state: &[f64]) -> Option<Arrival> {
+    /// free; none where differences are fewer than states, or a number is not finite. Where the state is no minimum, since it is held at a bound, what is learned is
+    /// the minimum of the linearised sum of squares, beyond the bound: the bound is no measurement, and counts again in each window.
+    fn after(window: &Window<'_>, state: &[f64], is_least: bool) -> Option<Arrival> {
         let n = state.len();
         let free: Vec<usize> = (0..n).collect();
         let window = Window { free, ..window.clone() };
@@ -154,12 +157,21 @@ impl Arrival {
         if here.slopes.nrows() < n || here.end.iter().any(|value| !value.is_finite()) {
             return None;
         }
-        let factor = here.slopes.qr().unpack_r();
+        let triangle = here.slopes.qr();
+        let mut mean = here.end;
+        if !is_least {
+            let mut rotated = here.differences;
+            triangle.q_tr_mul(&mut rotated);
+            let step = triangle.r().solve_upper_triangular(&rotated.rows(0, n).into_owned())?;
+            let moved = &here.end_slopes * step;
+            mean.iter_mut().zip(moved.iter()).for_each(|(value, moved)| *value -= moved);
+        }
+        let factor = triangle.unpack_r();
         // R x at the first sample is R F^-1 x at the last
         let carried = here.end_slopes.transpose().lu().solve(&factor.transpose())?.transpose();
         let factor = carried.qr().unpack_r();
-        let is_told = factor.iter().all(|value| value.is_finite());
-        is_told.then_some(Arrival { mean: here.end, factor })
+        let is_told = factor.iter().chain(mean.iter()).all(|value| value.is_finite());
+        is_told.then_some(Arrival { mean, factor })
     }
 }
 
@@ -201,7 +213,7 @@ impl MovingWindow {
         let task = Task { exact: false, ..task.clone() };
         let window = Self::window(&task, &update.estimate, rows, clamped);
         let state = [&update.estimate[..], &update.outputs].concat();
-        Arrival::after(&window, &state).map(Arc::new)
+        Arrival::after(&window, &state, update.at_bounds.is_empty()).map(Arc::new)
     }
 }
 

@@ -38,6 +38,7 @@ pub mod slow;
 pub mod solid;
 #[doc(hidden)]
 pub mod space;
+mod stepped;
 mod stream;
 mod study;
 mod switch;

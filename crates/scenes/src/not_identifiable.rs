@@ -69,7 +69,9 @@ fn with_calibrations(
     for place in 0..system.fields.len() {
         let field = &system.fields[place].name;
         let driver = wanted.inputs.iter().find(|(other, _)| other == field).map(|(_, symbol)| symbol);
-        if driver.is_none() && system.fields[place].role == Role::Input {
+        // a known signal is driven by its derivative, and no constant
+        let is_of_a_signal = field.contains('\'');
+        if driver.is_none() && !is_of_a_signal && system.fields[place].role == Role::Input {
             system.fields[place].role = Role::Other;
         }
     }
@@ -169,6 +171,18 @@ fn delayed(system: &mut System, late: &[(Symbol, Symbol)], wanted: &EstimateQues
     };
     if !late.iter().all(|(column, _)| is_read(column)) {
         // a delay of a column that drives the model is reported where the model is made
+        return None;
+    }
+    // of an output that a known signal is a part of, the derivative of the signal is a part too
+    let signals: Vec<Symbol> = system.signal_chains().into_iter().flatten().collect();
+    let late_nodes: Vec<NodeId> = late
+        .iter()
+        .filter_map(|(column, _)| {
+            let name = system.symbol_name(*column);
+            system.outputs.iter().find(|(output, _)| output == name).map(|(_, node)| *node)
+        })
+        .collect();
+    if system.graph.symbols_of(late_nodes).iter().any(|symbol| signals.contains(symbol)) {
         return None;
     }
     let mut driven: Vec<Symbol> = Vec::new();

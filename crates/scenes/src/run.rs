@@ -332,11 +332,13 @@ impl Experiment {
         let mut answers = Vec::new();
         // the same for all methods, and not asked for where none has an answer
         let counted = OnceCell::new();
+        let steps = self.steps_between_samples(&task);
         for &method in &self.scene.observer.methods {
             let begin = Instant::now();
             let mut track = self.observer(method).observe(&task);
             self.pass_poles(method, &mut track, interrupt);
             self.name_mirrors(&mut track);
+            track.remarks.extend(steps.clone());
             if track.others.is_empty() && is_believed(&track) {
                 track.remarks.extend(counted.get_or_init(|| self.counted_values(interrupt)).clone());
             }

@@ -126,6 +126,15 @@ pub fn smooth_part(
     let mut guards = system.smooth_guards(&system.moving_fields());
     guards.extend(branch.guards.iter().chain(further));
     let guards = system.substitute_guards(&guards, held);
+    // a divisor may vanish on all of the branch
+    let divisors: Vec<NodeId> =
+        guards.iter().filter(|guard| guard.need == Need::NotZero).map(|guard| guard.node).collect();
+    for (divisor, there) in divisors.iter().zip(branch.put_in(system, &divisors)?) {
+        if !branch.values.is_empty() && vanishes(system, there) {
+            let text = system.graph.text(*divisor);
+            return Ok(SmoothPart::Thin(format!("outputs and rates are divided by {text}, which is zero here")));
+        }
+    }
     Ok(match interior(system, branch, &guards)? {
         Interior::Open(_) => SmoothPart::Open,
         Interior::Empty(guard) => SmoothPart::Thin(format!(

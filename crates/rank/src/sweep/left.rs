@@ -22,10 +22,12 @@ pub(super) fn left_by_inequalities(
     while let Some(branch) = open.pop() {
         let held = held_conditions(system, question, &branch);
         if branch.assumed.is_empty() {
-            // where nothing is smooth, what holds at almost all states of the branch says nothing
-            match smooth_part(system, &branch, &held, &[]).map_err(RankError::Condition)? {
-                SmoothPart::Thin(why) => undefined = Some(why),
-                SmoothPart::Open | SmoothPart::NotShown(_) => found.push(branch),
+            // of a set that is asked for the states that are drawn decide whether anything is defined there
+            let is_of_all = question.conditions.is_empty() && question.fixed.is_empty();
+            match is_of_all.then(|| smooth_part(system, &branch, &held, &[])).transpose() {
+                Ok(Some(SmoothPart::Thin(why))) => undefined = Some(why),
+                Ok(_) => found.push(branch),
+                Err(why) => return Err(RankError::Condition(why)),
             }
             continue;
         }

@@ -7,7 +7,7 @@ use palmistry_fit::{EstimatedParameter, JointExperiment, JointMeasurement, Joint
 use palmistry_lang::{Kind, ReadError, SymbolInfo, System, nearest};
 use palmistry_math::expression::{NodeId, Symbol};
 use palmistry_math::number::rational_from_f64;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::Path;
 
 type Values = HashMap<Symbol, NodeId>;
@@ -280,6 +280,7 @@ impl<'s> Building<'s> {
         let places: HashMap<&str, usize> =
             scene.experiments.iter().enumerate().map(|(at, (name, _))| (name.as_str(), at)).collect();
         let mut measurements = Vec::new();
+        let moving = self.symbols_of_the_motion()?;
         let mut known: HashMap<(usize, String, String), [NodeId; 2]> = HashMap::new();
         for row in &rows.rows {
             let Some(experiment) = places.get(row.experiment.as_str()).copied() else {
@@ -316,7 +317,7 @@ impl<'s> Building<'s> {
             let formulas = match known.get(&key) {
                 Some(formulas) => *formulas,
                 None => {
-                    let found = self.measured(row, &rows, &settings[experiment], &error.size)?;
+                    let found = self.measured((row, &rows), &settings[experiment], &error.size, &moving)?;
                     known.insert(key, found);
                     found
                 }
@@ -345,13 +346,23 @@ impl<'s> Building<'s> {
         })
     }
 
+    /// What the rates and the states at the start depend on.
+    fn symbols_of_the_motion(&mut self) -> Result<HashSet<Symbol>, ReadError> {
+        let mut nodes = self.rates.clone();
+        let scene = self.scene;
+        for (name, formula) in &scene.initial {
+            nodes.push(self.value(formula, &format!("initial.{name}"))?);
+        }
+        Ok(self.system.graph.symbols_of(nodes).into_iter().collect())
+    }
+
     /// The expected value of a row, and the size of its error.
     fn measured(
         &mut self,
-        row: &MeasuredRow,
-        rows: &MeasuredRows,
+        (row, rows): (&MeasuredRow, &MeasuredRows),
         settings: &Values,
         size: &Formula,
+        moving: &HashSet<Symbol>,
     ) -> Result<[NodeId; 2], ReadError> {
         let at_row = |why: (String, String)| rows.error(row, why.0, why.1);
         let mut own = Values::new();
@@ -378,6 +389,27 @@ impl<'s> Building<'s> {
         }
         let expected = self.formula(&row.output).map_err(at_row)?;
         let size = self.value(size, &format!("errors.{}", row.output))?;
+        let needed = self.system.graph.symbols_of([expected, size]);
+        for symbol in own.keys() {
+            let name = palmistry_io::foreign::shown(self.system.symbol_name(*symbol));
+            if moving.contains(symbol) {
+                return Err(rows.error(
+                    row,
+                    format!("'{name}' is a part of the motion, and a row sets what belongs to its output and its error alone"),
+                    "set it in an experiment of its own",
+                ));
+            }
+            if !needed.contains(symbol) {
+                return Err(rows.error(
+                    row,
+                    format!(
+                        "'{name}' is set, and neither '{}' nor its error has it",
+                        palmistry_io::foreign::shown(&row.output)
+                    ),
+                    "leave it out, or set it in the experiment",
+                ));
+            }
+        }
         let both = self.system.graph.substitute(&[expected, size], &own);
         let both = self.put_in(&both, settings)?;
         Ok([both[0], both[1]])
