@@ -66,6 +66,8 @@ fn written(expression: &ForeignExpr, names: &ForeignNames) -> Result<(String, Bi
         }
         ForeignKind::Product(factors) => {
             let (mut out, mut negative) = (String::new(), false);
+            // where the last factor begins, if it is a power
+            let mut power = None;
             let is_one = |factor: &ForeignExpr| {
                 factor.as_number().is_some_and(|n| *n == RBig::ONE || *n == RBig::from(-1))
             };
@@ -87,12 +89,20 @@ fn written(expression: &ForeignExpr, names: &ForeignNames) -> Result<(String, Bi
                 // what is divided by holds together; a product in front or behind a factor is one with it
                 let brackets = binding == Binding::Sum || *divided && binding <= Binding::Product;
                 let text = if brackets { format!("({text})") } else { text };
+                // a^1/2 would be read as the power one half by some, and is refused
+                if let Some(from) =
+                    power.take().filter(|_| *divided && text.starts_with(|c: char| c.is_ascii_digit()))
+                {
+                    out.insert(from, '(');
+                    out.push(')');
+                }
                 match (at, divided) {
                     (0, false) => {}
                     (0, true) => out.push_str("1/"),
                     (_, false) => out.push('*'),
                     (_, true) => out.push('/'),
                 }
+                power = (binding == Binding::Power).then_some(out.len());
                 out.push_str(&text);
             }
             (format!("{}{out}", if negative { "-" } else { "" }), Binding::Product)

@@ -218,3 +218,32 @@ fn windows_grow_to_a_bound() {
     assert_eq!(told, (100 - 1) / 7, "{:?}", track.remarks);
     assert_eq!(track.estimates.len(), SAMPLES);
 }
+
+/// A bound at the truth: half of the windows' estimates lie at it. What is handed on is what the measurements told, without the bound, so that the last window has the
+/// best line that keeps the bound, of all measurements; and no window is said to differ from the one before.
+#[test]
+fn what_is_handed_on_from_a_bound_is_what_the_measurements_told() {
+    let (_folder, plain) = point("bounds = { v = [0.5, 2] }\n");
+    let mut at_bounds = 0;
+    for seed in 1..=16 {
+        let mut scene = plain.scene.clone();
+        scene.seed = seed;
+        let experiment = palmistry::experiment::Experiment::new(scene, None).unwrap();
+        let track = &answers(&experiment)[0].track;
+        assert!(track.is_sound(), "seed {seed}: {:?}", track.together());
+        at_bounds += track.updates.iter().filter(|update| !update.at_bounds.is_empty()).count();
+        let last = track.updates.last().unwrap();
+        let (times, values) = (experiment.signals.times(), experiment.signals.column(0));
+        let ([mut start, mut slope], _) = line(times, values);
+        if slope < 0.5 {
+            slope = 0.5;
+            let rest = times.iter().zip(values).map(|(time, value)| value - 0.5 * time);
+            start = rest.sum::<f64>() / times.len() as f64;
+        }
+        let known = [start + slope * last.from, slope];
+        for (found, known) in last.estimate.iter().zip(known) {
+            assert!((found - known).abs() < 1e-7, "seed {seed}: {:?} {known:?}", last.estimate);
+        }
+    }
+    assert!((16..64).contains(&at_bounds), "{at_bounds} of 80 estimates lie at the bound");
+}

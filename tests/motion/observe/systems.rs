@@ -328,3 +328,62 @@ fn values_that_are_no_mirror_images_are_counted() {
     let (window, _) = remarks(scene);
     assert!(!window.contains("several values"), "{window}");
 }
+
+/// A bias and a delay of what a known signal drives: neither is refused, and both are found.
+#[test]
+fn sensors_beside_a_known_signal() {
+    for (sensor, sought, truth) in [("bias = 0.3", "x.bias", 0.3), ("delay = 0.1", "x.delay", 0.1)] {
+        let folder = folder();
+        write(
+            &folder,
+            "first.proof",
+            "system \"first order\" state x param k, b unknown known u(t) drift f x' = -k*x + b*u output x sample x in [-2, 2] k in [0.5, 5] b in [0.5, 5]",
+        );
+        let text = format!(
+            "title = \"a sensor beside a known signal\"\nmodel = \"first.proof\"\nduration = 8\nsamples = 161\n[start]\nx = 0.5\nk = 2\nb = 1.2\n\
+             [inputs]\nu = \"sin(1.3*t) + 0.5*cos(3*t)\"\n[sensor]\nnoise = 0.01\n[sensor.x]\nnoise = 0.01\n{sensor}\n\
+             [observer]\nmethods = [\"trust-region\"]\nestimate = [\"x\", \"k\", \"b\", \"{sought}\"]\nguess = {{ x = 0.7, k = 1.5, b = 1 }}\nwindow = 160\nsteps = 30\n"
+        );
+        let scene = write(&folder, "s.toml", text);
+        let (output, found) = observe(&scene, &[]);
+        assert_eq!(output.status.code(), Some(0), "{found} {}", String::from_utf8_lossy(&output.stderr));
+        let state = &found["observers"][0]["updates"][0]["states"][sought];
+        let (value, bound) = (state["recovered"].as_f64().unwrap(), state["bound"].as_f64().unwrap());
+        assert!((value - truth).abs() < 5.0 * bound && bound < 0.1 * truth, "{state}");
+    }
+}
+
+/// A command that is held between samples, read without saying so: the answer is told to be doubted.
+#[test]
+fn a_stepped_input_is_remarked() {
+    let folder = folder();
+    write(
+        &folder,
+        "first.proof",
+        "system \"first order\" state x param k, b unknown known u(t) drift f x' = -k*x + b*u output x sample x in [-2, 2] k in [0.5, 5] b in [0.5, 5]",
+    );
+    let (k, b, step) = (2.0f64, 1.2f64, 0.1f64);
+    let (mut x, mut rows) = (0.0f64, "time,x,u\n".to_owned());
+    for i in 0..200u32 {
+        let u = if i / 5 % 2 == 0 { 1.0 } else { -1.0 };
+        rows += &format!("{:.1},{:.6},{u}\n", f64::from(i) * step, x + 0.01 * (7.7 * f64::from(i)).sin());
+        x = b * u / k + (x - b * u / k) * (-k * step).exp();
+    }
+    write(&folder, "run.csv", rows);
+    for (data, is_remarked) in
+        [("", true), ("interpolation = \"linear\"\n", true), ("interpolation = \"hold\"\n", false)]
+    {
+        let text = format!(
+            "title = \"a command\"\nmodel = \"first.proof\"\n[data]\nrecord = \"run.csv\"\n{data}[sensor]\nnoise = 0.01\n\
+             [observer]\nmethods = [\"trust-region\"]\nestimate = [\"x\", \"k\", \"b\"]\nguess = {{ x = 0.1, k = 1.5, b = 1 }}\nwindow = 199\nsteps = 30\n"
+        );
+        let scene = write(&folder, "s.toml", text);
+        let (_, found) = observe(&scene, &[]);
+        let told = found["observers"][0]["remarks"].to_string();
+        assert_eq!(told.contains("'u' changes in steps"), is_remarked, "{told}");
+        if !is_remarked {
+            let state = &found["observers"][0]["updates"][0]["states"]["k"];
+            assert!((state["recovered"].as_f64().unwrap() - k).abs() < 0.05, "{state}");
+        }
+    }
+}

@@ -307,6 +307,9 @@ fn peculiarities_of_each_language() {
     assert_eq!(julia("2^3a"), "2^(3*a)");
     assert_eq!(julia("a/b//c"), "a/(b/c)");
     assert_eq!(julia("-x(t)^2"), "-x^2");
+    // a half of it, and no root; the language takes neither without brackets
+    assert_eq!(julia("x(t)^1/2"), "(x^1)/2");
+    assert_eq!(julia("a*x(t)^2/3/x(t)"), "a*(x^2)/3/x");
     assert_eq!(julia("1_000.5 + 1f0 + 3//4*x(t)"), "1000.5 + 1 + 3/4*x");
     let printed = |e: &str| rate("a.txt", &format!("x' = {e}\noutputs: x\n"));
     assert_eq!(printed("-x**2**3"), "-x^(2^3)");

@@ -132,7 +132,9 @@ pub fn smooth_part(
     for (divisor, there) in divisors.iter().zip(branch.put_in(system, &divisors)?) {
         if !branch.values.is_empty() && vanishes(system, there) {
             let text = system.graph.text(*divisor);
-            return Ok(SmoothPart::Thin(format!("outputs and rates are divided by {text}, which is zero here")));
+            return Ok(SmoothPart::Thin(format!(
+                "outputs and rates are divided by {text}, which is zero here"
+            )));
         }
     }
     Ok(match interior(system, branch, &guards)? {

@@ -45,7 +45,10 @@ fn after_misfit(fit: &Fit) -> Advice {
             FAILS,
             "another model, estimating what is taken for known, or more 'noise' of the sensors if they have it",
         ),
-        _ => (FAILS, "another model, estimating what is taken for known, or a shorter 'window'"),
+        _ => (
+            FAILS,
+            "another model, estimating what is taken for known, a shorter 'window', or the 'noise' of each sensor: unless stated, all outputs are taken to have errors of one size",
+        ),
     }
 }
 

@@ -136,6 +136,10 @@ fn mistakes_are_named_where_they_are() {
         ("one,both,2", "one,bot,2", "the scene says nothing of the errors of 'bot'"),
         ("one,both,2,4", "one,both,2,0,4", "the row has 6 cells, and the header 5"),
         ("q = 2", "", "nothing says what 'q' is"),
+        ("q = 2", "q = 2; k = 3", "'k' is a part of the motion"),
+        ("q = 2", "q = 2; r = 3", "'r' is a part of the motion"),
+        ("q = 2", "q = 2; a = 3", "'a' is a part of the motion"),
+        ("q = 2", "q = 2; zzz = 3", "'zzz' is set, and neither 'both' nor its error has it"),
     ] {
         let why =
             experiments(SCENE, MODEL, &ROWS.replacen(from, to, 1)).err().unwrap_or_else(|| panic!("{to}"));
