@@ -187,3 +187,27 @@ fn a_part_that_rests_is_told() {
     assert_eq!((&steady[0]["name"], &steady[0]["value"]), (&"u".into(), &0.5.into()), "{steady}");
     assert_eq!(found["rank_along_motion"]["from"], "guess");
 }
+
+/// Small terms: of a file over its ranges and of a scene over those of its measurements, each with its bound, proved; what is no part of anything is refused.
+#[test]
+fn small_terms_go_with_a_bound() {
+    let scene = "proofs/moll2002/scenes/fixed_palms.toml";
+    let output = palmistry(&["plan", scene, "--tolerance", "0.3", "--no-times", "--json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let found = json(&output);
+    let least = &found["least_model"];
+    let small = least["small_terms"].as_array().unwrap();
+    assert!(!small.is_empty());
+    for one in small {
+        let (most, median) = (one["at_most"].as_str().unwrap(), one["median_of_rate"].as_f64().unwrap());
+        assert!(most.parse::<f64>().unwrap() <= 0.3 * median, "{one}");
+    }
+    assert!(least["claims"].as_array().unwrap().iter().all(|claim| claim["verdict"] == "proved"), "{least}");
+    let plain = json(&palmistry(&["plan", scene, "--no-times", "--json"]));
+    assert_eq!(plain["least_model"]["small_terms"], serde_json::json!([]));
+    for wrong in ["0", "1", "-1e-3", "nan", "much"] {
+        let output = palmistry(&["reduce", GENERAL, "--tolerance", wrong]);
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && told.contains("above 0 and below 1"), "{wrong}: {told}");
+    }
+}

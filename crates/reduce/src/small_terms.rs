@@ -101,13 +101,17 @@ pub(crate) fn leave_out_small_terms(
 fn known_ranges(remaining: &Remaining) -> HashMap<Symbol, (RBig, RBig)> {
     let mut found = HashMap::new();
     for (symbol, info) in remaining.system.symbols() {
-        let value = remaining.constants.iter().find(|(constant, _)| *constant == symbol);
-        let value = value.and_then(|(_, value)| value.clone()).or_else(|| info.default.clone());
-        match (&info.range, value) {
-            (_, Some(value)) => found.insert(symbol, (value.clone(), value)),
-            (Some(range), None) => found.insert(symbol, (range.low.clone(), range.high.clone())),
-            (None, None) => None,
+        let known = remaining.constants.iter().find(|(constant, _)| *constant == symbol);
+        let known = known.and_then(|(_, value)| value.clone());
+        // a parameter with a range may have any value in it
+        let ends = match (known, &info.range, &info.default) {
+            (Some(value), ..) | (None, None, Some(value)) => Some((value.clone(), value.clone())),
+            (None, Some(range), _) => Some((range.low.clone(), range.high.clone())),
+            (None, None, None) => None,
         };
+        if let Some(ends) = ends {
+            found.insert(symbol, ends);
+        }
     }
     for law in &remaining.laws {
         if let Some([low, high]) = law.range_of_the_total(&remaining.system) {

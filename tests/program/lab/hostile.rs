@@ -351,10 +351,12 @@ fn one_client_does_not_shut_out_the_others() {
         std::io::Write::write_all(&mut stream, &question).expect("it reads");
         stream
     };
-    let waiting: Vec<_> = (0..160).map(send).collect();
+    let mut waiting: Vec<_> = (0..160).map(send).collect();
     let begin = std::time::Instant::now();
     let refused = || lab.raw(&lab.request("answer", "{\"ask\": \"models\"}")).map(|reply| reply.status);
     while refused() != Some(429) {
+        // on a busy machine some may have been answered before all were sent
+        waiting.extend((0..16).map(send));
         assert!(begin.elapsed().as_secs() < 20, "{:?}", refused());
     }
     // the page itself is there all the same, and when they have gone there is room again
