@@ -104,7 +104,7 @@ fn known_ranges(remaining: &Remaining) -> HashMap<Symbol, (RBig, RBig)> {
         let known = remaining.constants.iter().find(|(constant, _)| *constant == symbol);
         let known = known.and_then(|(_, value)| value.clone());
         // a parameter with a range may have any value in it
-        let ends = match (known, &info.range, &info.default) {
+        let ends = match (&known, &info.range, &info.default) {
             (Some(value), ..) | (None, None, Some(value)) => Some((value.clone(), value.clone())),
             (None, Some(range), _) => Some((range.low.clone(), range.high.clone())),
             (None, None, None) => None,
