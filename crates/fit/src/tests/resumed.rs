@@ -28,8 +28,11 @@ impl Keep for Memory {
     }
 }
 
-/// All that a fit says of its searches, to the last bit.
-fn all(fit: &JointFit) -> Vec<(Vec<u64>, Vec<u64>, u64, u64, StartEnd)> {
+/// A search, to the last bit: its start, its end, its objective and steps, and how it ended.
+type Bits = (Vec<u64>, Vec<u64>, u64, u64, StartEnd);
+
+/// All that a fit says of its searches.
+fn all(fit: &JointFit) -> Vec<Bits> {
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect();
     let one = |one: &crate::SearchEnd| {
         (bits(&one.start), bits(&one.found), one.objective.to_bits(), one.steps, one.end.clone())
