@@ -1,7 +1,6 @@
 //! `palmistry observe`: a body or another system in motion, and observers that recover its state.
 
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, nothing_found, watched};
-use super::observe_choice::status_with;
 use super::observe_stream;
 use super::observe_studies::studies;
 use super::output::{Files, Form, print_in_lines, progress, read_scene};
@@ -85,10 +84,10 @@ pub(crate) struct Observe {
     pub(super) track: Option<PathBuf>,
     /// Choose the observer, in the place of those that the scene names: filters, windows and all samples at once are tried until
     /// the standard deviation of each estimated state at the end is at most this part of its size, as in 1e-3.
-    #[arg(long, value_name = "PART", value_parser = super::reduce::part, conflicts_with_all = ["within", "studies", "shard", "merge", "missing"])]
+    #[arg(long, value_name = "PART", value_parser = super::arguments::part, conflicts_with_all = ["within", "studies", "shard", "merge", "missing"])]
     pub(super) accuracy: Option<f64>,
     /// Choose the observer in the same way: the most accurate of those whose estimate takes at most this long, as in 20ms or 1.5s.
-    #[arg(long, value_name = "TIME", value_parser = super::observe_choice::time, conflicts_with_all = ["studies", "shard", "merge", "missing"])]
+    #[arg(long, value_name = "TIME", value_parser = super::arguments::time, conflicts_with_all = ["studies", "shard", "merge", "missing"])]
     pub(super) within: Option<f64>,
     /// Keep how far each search of a fit has come in this file, and go on from it where it is there: of scenes with several experiments. A run in several parts gives the
     /// answer of one run.
@@ -251,7 +250,7 @@ impl Observe {
         });
         let is_known = |found: &Recognition| found.verdict != RecognitionVerdict::NoneOfThem;
         let status = Status::of(as_expected && experiment.recognition.as_ref().is_none_or(is_known));
-        let status = status_with(status, choice.as_ref());
+        let status = self.status_with(status, choice.as_ref());
         let text = || match &choice {
             Some(choice) => format!("{}\n{}", choice_text(choice, !no_times), observe_text(&observed)),
             None => observe_text(&observed),

@@ -7,19 +7,6 @@ use indicatif::ProgressBar;
 use palmistry::experiment::{Experiment, ObserverChoice, Sufficient};
 use palmistry::system::Code;
 
-/// A time with its unit, `20ms` or `1.5 s`; in s.
-pub(super) fn time(text: &str) -> Result<f64, String> {
-    let text = text.trim();
-    let (number, unit) = match text.strip_suffix("ms") {
-        Some(number) => (number, 1e-3),
-        None => (text.strip_suffix('s').unwrap_or(text), 1.0),
-    };
-    match number.trim().parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value * unit),
-        _ => Err("write a time with its unit, as in 20ms or 1.5s".to_owned()),
-    }
-}
-
 impl Observe {
     /// What is asked of an observer, where something is.
     pub(super) fn sufficient(&self) -> Option<Sufficient> {
@@ -53,12 +40,12 @@ impl Observe {
         }
         Ok(Some(choice))
     }
-}
 
-/// The status with a choice: what is asked for has to be reached.
-pub(super) fn status_with(status: Status, choice: Option<&ObserverChoice>) -> Status {
-    match choice {
-        Some(choice) if !choice.suffices && status == Status::AsExpected => Status::NotAsExpected,
-        _ => status,
+    /// The status with a choice: what is asked for has to be reached.
+    pub(super) fn status_with(&self, status: Status, choice: Option<&ObserverChoice>) -> Status {
+        match choice {
+            Some(choice) if !choice.suffices && status == Status::AsExpected => Status::NotAsExpected,
+            _ => status,
+        }
     }
 }

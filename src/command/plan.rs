@@ -41,7 +41,7 @@ pub(crate) struct Plan {
     seed: Option<u64>,
     /// Leave out terms of a rate that together are at most this part of the median of its absolute values, as in 1e-6: over the ranges of the
     /// measurements, the bounds of what is estimated, and else those of the model's file. How large they are at most is proved, or they stay.
-    #[arg(long, value_name = "PART", value_parser = super::reduce::part)]
+    #[arg(long, value_name = "PART", value_parser = super::arguments::part)]
     tolerance: Option<f64>,
     /// Write the proof file of the least model here.
     #[arg(long, value_name = "FILE")]

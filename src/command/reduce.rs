@@ -50,7 +50,7 @@ pub(crate) struct Reduce {
     signal: Vec<String>,
     /// Leave out terms of a rate that together are at most this part of the median of its absolute values over the ranges of the file, as in 1e-6. How
     /// large they are at most is proved, or they stay.
-    #[arg(long, value_name = "PART", value_parser = part)]
+    #[arg(long, value_name = "PART", value_parser = super::arguments::part)]
     tolerance: Option<f64>,
     /// Write the proof file here; without it, it is printed.
     #[arg(long, value_name = "FILE")]
@@ -133,14 +133,6 @@ impl Reduce {
             tolerance: self.tolerance,
             ranges: Vec::new(),
         })
-    }
-}
-
-/// A part of something: a number above zero and below one.
-pub(super) fn part(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(part) if part > 0.0 && part < 1.0 => Ok(part),
-        _ => Err("write a number above 0 and below 1, as in 1e-6".to_owned()),
     }
 }
 

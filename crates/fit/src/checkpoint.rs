@@ -1,6 +1,6 @@
 //! What searches have come to, so that a later run goes on from there: to the last bit as one run that was not interrupted.
 
-use super::search::{SearchEnd, StartEnd};
+use super::ends::{SearchEnd, StartEnd};
 use super::trust::{Iteration, Scoring};
 use argmin::core::checkpointing::{Checkpoint, CheckpointingFrequency};
 use argmin::core::{Error, State};

@@ -10,6 +10,7 @@
 
 mod checkpoint;
 mod compiled;
+mod ends;
 mod information;
 mod laws;
 mod likelihood;
@@ -21,12 +22,13 @@ mod steady;
 mod trust;
 
 pub use checkpoint::{Keep, SearchState};
+pub use ends::{SearchEnd, StartEnd};
 pub use information::{Information, WeakDirection};
 pub use laws::{ErrorLaw, ErrorScale, ParameterScale, Prior, PriorLaw};
 pub use likelihood::{Likelihood, SimulatedExperiments};
 pub use problem::{EstimatedParameter, JointExperiment, JointMeasurement, JointProblem, Phase};
 pub use profile::{ParameterProfile, profile};
-pub use search::{ALLOWED, JointFit, SearchEnd, StartEnd, fit};
+pub use search::{ALLOWED, JointFit, fit};
 pub use simulate::{Exactness, NotFollowed};
 
 #[cfg(test)]

@@ -3,8 +3,9 @@
 //! Reference: A. Raue et al., Structural and practical identifiability analysis of partially observed dynamical models by exploiting the
 //! profile likelihood, Bioinformatics 25, 2009.
 
+use super::ends::StartEnd;
 use super::likelihood::Likelihood;
-use super::search::{ALLOWED, StartEnd, search};
+use super::search::{ALLOWED, search};
 use super::simulate::Exactness;
 
 /// A step along a profile is chosen to change the logarithm of the likelihood by about this.

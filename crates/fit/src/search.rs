@@ -1,6 +1,7 @@
 //! The largest likelihood, from many starts.
 
 use super::checkpoint::{Keep, Kept, SearchCheckpoint};
+use super::ends::{SearchEnd, StartEnd};
 use super::information::Information;
 use super::likelihood::{Likelihood, SimulatedExperiments};
 use super::simulate::{Exactness, NotFollowed};
@@ -38,36 +39,6 @@ pub const ALLOWED: f64 = 3.841_458_820_694_124 / 2.0;
 
 /// Ends that are as likely lie apart where a parameter differs by more than this many standard deviations: within its interval of 95 % it would by two.
 const APART: f64 = 5.0;
-
-/// How a search ended.
-#[derive(Clone, Debug, PartialEq)]
-pub enum StartEnd {
-    /// No step raises the likelihood by anything that counts.
-    Converged,
-    /// Its steps are spent: the likelihood still grows.
-    StepsSpent,
-    /// No step raises the likelihood, although its slope says so.
-    Stuck,
-    /// No start could be simulated; why the last could not.
-    NoStart(String),
-    /// It was interrupted.
-    Interrupted,
-}
-
-/// A search from one start.
-#[derive(Clone, Debug)]
-pub struct SearchEnd {
-    /// Where it began, on the scales of the parameters.
-    pub start: Vec<f64>,
-    /// Where it ended.
-    pub found: Vec<f64>,
-    /// Minus the logarithm of the likelihood there, priors included.
-    pub objective: f64,
-    /// How many steps were made.
-    pub steps: u64,
-    /// How it ended.
-    pub end: StartEnd,
-}
 
 /// What searches from many starts came to.
 #[derive(Clone, Debug)]

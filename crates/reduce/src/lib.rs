@@ -27,6 +27,7 @@ pub use small_terms::SmallTerms;
 use palmistry_lang::System;
 use palmistry_math::expression::Program;
 use remaining::Remaining;
+use small_terms::leave_out_small_terms;
 
 /// A system under conditions, as a proof file, and what was left out of it.
 #[derive(Clone, Debug)]
@@ -66,7 +67,7 @@ pub fn reduce(system: &System, question: &ReduceQuestion, import: &str) -> Resul
     remaining.leave_out_what_no_output_needs();
     remaining.use_conservation_laws();
     let small_terms = match question.tolerance {
-        Some(tolerance) => remaining.leave_out_small_terms(tolerance),
+        Some(tolerance) => leave_out_small_terms(&mut remaining, tolerance),
         None => Vec::new(),
     };
     remaining.put_in_order();

@@ -3,7 +3,6 @@
 use super::flows::{Flow, component, flows, given};
 use super::laws::{Law, Movements, laws};
 use super::question::{NotReduced, ReduceQuestion};
-use super::small_terms::{LeftOutOfRate, SmallTerms, leave_out_small_terms};
 use dashu::rational::RBig;
 use palmistry_lang::{Assignment, System, Time, UnknownKind, nearest};
 use palmistry_math::expression::{
@@ -55,6 +54,19 @@ pub(crate) struct RemainingOutput {
     pub is_zero: bool,
     /// Whether the smaller system measures it: not so what is known anyway.
     pub is_kept: bool,
+}
+
+/// Small terms of one rate, for the claims about it.
+#[derive(Clone, Debug)]
+pub(crate) struct LeftOutOfRate {
+    /// The place of the flow.
+    pub flow: usize,
+    pub state: Symbol,
+    pub bound: String,
+    /// What was left out: the larger system's rate less this one.
+    pub difference: NodeId,
+    /// The ranges of the symbols on which the difference depends.
+    pub ranges: Vec<(Symbol, RBig, RBig)>,
 }
 
 /// A system on its way to a smaller one.
@@ -378,19 +390,6 @@ impl Remaining {
         self.states.iter().copied().chain(unknown).collect()
     }
 
-    /// Leaves out terms that are small over the ranges, and then what outputs depend on by them alone.
-    pub fn leave_out_small_terms(&mut self, tolerance: f64) -> Vec<SmallTerms> {
-        let (told, approximated) = leave_out_small_terms(self, tolerance);
-        self.approximated = approximated;
-        if !told.is_empty() {
-            self.remarks.push("the rank is of this model: small terms may make more observable".to_owned());
-        }
-        for place in self.not_needed() {
-            self.leave_out(place, WhyLeftOut::InSmallTermsAlone);
-        }
-        told
-    }
-
     /// Leaves out states and constants on which no output depends, by itself or by the rate of something on which it does.
     pub fn leave_out_what_no_output_needs(&mut self) {
         for place in self.not_needed() {
@@ -401,7 +400,7 @@ impl Remaining {
     }
 
     /// The places of what no output depends on, the last one first.
-    fn not_needed(&self) -> Vec<usize> {
+    pub fn not_needed(&self) -> Vec<usize> {
         let places: HashMap<Symbol, usize> =
             self.states.iter().enumerate().map(|(place, state)| (*state, place)).collect();
         let mut needed: HashSet<Symbol> = self.further_outputs.iter().copied().collect();
@@ -456,7 +455,8 @@ impl Remaining {
         }
     }
 
-    fn leave_out(&mut self, place: usize, why: WhyLeftOut) {
+    /// Leaves out the state of a place.
+    pub fn leave_out(&mut self, place: usize, why: WhyLeftOut) {
         let symbol = self.states.remove(place);
         self.rates.iter_mut().for_each(|rates| {
             rates.remove(place);

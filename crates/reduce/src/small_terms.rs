@@ -6,7 +6,7 @@
 //! ([`palmistry_inequality::decide`]), or the terms stay.
 
 use super::differences::difference;
-use super::remaining::Remaining;
+use super::remaining::{LeftOutOfRate, Remaining, WhyLeftOut};
 use dashu::rational::RBig;
 use palmistry_inequality::{Given, InequalityAnswer, decide};
 use palmistry_math::expression::{
@@ -32,19 +32,6 @@ pub struct SmallTerms {
     pub median: f64,
 }
 
-/// Small terms of one rate, for the claims about it.
-#[derive(Clone, Debug)]
-pub(crate) struct LeftOutOfRate {
-    /// The place of the flow.
-    pub flow: usize,
-    pub state: Symbol,
-    pub bound: String,
-    /// What was left out: the larger system's rate less this one.
-    pub difference: NodeId,
-    /// The ranges of the symbols on which the difference depends.
-    pub ranges: Vec<(Symbol, RBig, RBig)>,
-}
-
 /// So many states are drawn.
 const DRAWN: usize = 256;
 
@@ -60,13 +47,11 @@ const MOST_FAILED: usize = 4;
 /// A rate with more summands is left as it is.
 const MOST_SUMMANDS: usize = 400;
 
-/// Leaves out of every rate the summands that together are at most `tolerance` times the median of its absolute values at drawn states.
-pub(crate) fn leave_out_small_terms(
-    remaining: &mut Remaining,
-    tolerance: f64,
-) -> (Vec<SmallTerms>, Vec<LeftOutOfRate>) {
+/// Leaves out of every rate the summands that together are at most `tolerance` times the median of its absolute values at drawn states, and then what outputs
+/// depend on by them alone.
+pub(crate) fn leave_out_small_terms(remaining: &mut Remaining, tolerance: f64) -> Vec<SmallTerms> {
     let ranges = known_ranges(remaining);
-    let (mut told, mut kept) = (Vec::new(), Vec::new());
+    let mut told = Vec::new();
     for flow in 0..remaining.flows.len() {
         for place in 0..remaining.states.len() {
             let rate = remaining.rates[flow][place];
@@ -85,7 +70,7 @@ pub(crate) fn leave_out_small_terms(
                 median: found.median,
             });
             let ranges = found.ranges;
-            kept.push(LeftOutOfRate {
+            remaining.approximated.push(LeftOutOfRate {
                 flow,
                 state,
                 bound: found.bound,
@@ -94,7 +79,13 @@ pub(crate) fn leave_out_small_terms(
             });
         }
     }
-    (told, kept)
+    if !told.is_empty() {
+        remaining.remarks.push("the rank is of this model: small terms may make more observable".to_owned());
+    }
+    for place in remaining.not_needed() {
+        remaining.leave_out(place, WhyLeftOut::InSmallTermsAlone);
+    }
+    told
 }
 
 /// The ranges that the file, the conservation laws and known values give.

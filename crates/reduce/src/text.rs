@@ -3,8 +3,7 @@
 use super::flows::Flow;
 use super::names::{Names, TOO_LONG};
 use super::question::NotReduced;
-use super::remaining::{LeftOutState, Remaining, WhyLeftOut};
-use super::small_terms::LeftOutOfRate;
+use super::remaining::{LeftOutOfRate, LeftOutState, Remaining, WhyLeftOut};
 use dashu::rational::RBig;
 use palmistry_lang::{Assignment, Kind, parse_statement};
 use palmistry_math::expression::syntax::Equation;
