@@ -82,7 +82,7 @@ pub(crate) struct Observe {
     /// Write the estimates sample by sample to a file, CSV or Parquet: each state with its bound.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
     pub(super) track: Option<PathBuf>,
-    /// Choose the observer, in the place of those that the scene names: filters, windows and all samples at once are tried until
+    /// Choose the observer, in the place of those that the scene names: windows of several lengths and all samples at once are tried until
     /// the standard deviation of each estimated state at the end is at most this part of its size, as in 1e-3.
     #[arg(long, value_name = "PART", value_parser = super::arguments::part, conflicts_with_all = ["within", "studies", "shard", "merge", "missing"])]
     pub(super) accuracy: Option<f64>,

@@ -71,8 +71,7 @@ pub fn choice_json(choice: &ObserverChoice, times: bool) -> Value {
 fn name(own: &TriedObserver) -> String {
     match own.window {
         Some(window) => format!("{}, windows of {window} samples", own.method.name()),
-        None if own.method.is_by_windows() => format!("{}, all samples at once", own.method.name()),
-        None => own.method.name().to_owned(),
+        None => format!("{}, all samples at once", own.method.name()),
     }
 }
 

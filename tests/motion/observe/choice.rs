@@ -50,7 +50,7 @@ fn an_accuracy_takes_the_first_that_suffices() {
     let folder = folder();
     let scene = scene(&folder, SCENE);
     let mut places = Vec::new();
-    for asked in ["1e-1", "3e-3", "1.2e-3"] {
+    for asked in ["1e-1", "1e-3", "4e-4"] {
         let track = folder.path().join(format!("{asked}.csv"));
         let (output, found) = observe(&scene, &["--accuracy", asked, "--track", track.to_str().unwrap()]);
         assert_eq!(output.status.code(), Some(0), "{found}");
@@ -85,7 +85,7 @@ fn an_accuracy_that_no_observer_reaches() {
     let accuracies: Vec<f64> = tried.iter().filter_map(|one| one["accuracy"].as_f64()).collect();
     let best = accuracies.iter().copied().fold(f64::INFINITY, f64::min);
     assert_eq!(tried[choice["chosen"].as_u64().unwrap() as usize]["accuracy"], best);
-    // all of them were tried: filters, all samples, windows of which each is half as long as the one before
+    // all of them were tried: all samples, and windows of which each is half as long as the one before
     let windows: Vec<u64> = tried.iter().filter_map(|one| one["window"].as_u64()).collect();
     assert!(windows.windows(2).all(|pair| pair[0] == 2 * pair[1]) && windows.len() > 3, "{windows:?}");
     let words = palmistry(&["observe", scene.to_str().unwrap(), "--accuracy", "1e-6"]);
