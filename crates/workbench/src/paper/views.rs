@@ -296,13 +296,13 @@ mod tests {
     /// Nothing is divided by; and a sweep that was stopped says nothing of the states that it did not come to.
     #[test]
     fn states_without_a_rank_are_told_by_what_is_missing() {
-        let text = "system \"s\" state x, v drift f x' = v v' = sqrt(-1 - x^2) output x \
+        let text = "system \"s\" state x, v drift f x' = v v' = sqrt(-5 - x) output x \
                     sample x in [-1, 1] v in [-1, 1]";
         let mut found = rank_on(&text.parse().unwrap(), None, 1, &false.into());
         assert!(found.is_pole());
         assert_eq!(
             found.answer().map(|answer| answer.branches.len()),
-            Err("no state that was drawn there has a rank: outside of -1 - x^2 > 0".to_owned())
+            Err("no state that was drawn there has a rank: outside of -5 - x > 0".to_owned())
         );
         if let Ok(answer) = &mut found.found {
             answer.branches[0].full.interrupted = true;
