@@ -44,7 +44,6 @@ COMMANDS = {
         "--global": "System.global_", "--functions": "functions", "--work": "work", "--accessible": "System.accessible", "--singular-set": "System.singular_set", "--out": "SingularSet.page",
         "--reparametrise": "System.reparametrise", "--details": "*all of it is in `.json`*", "--verdicts": "run", "--verdict-states": "run",
         "--shard": "shards", "--part": "folder", "--merge": "sweep", "--missing": "cluster.missing",
-        "--accuracy": "run", "--within": "run", "--resume": "run",
     }),
     "recheck": (["recheck_file", "Claims.recheck"], {"--proofs": "proofs"}),
     "certify": (["System.certify"], {
@@ -57,6 +56,7 @@ COMMANDS = {
     "observe": (["observe", "stream", "cluster.sweep_command"], {
         "--data": "data", "--studies": "studies", "--out": "Observation.page", "--record": "Observation.measurements", "--motion": "Observation.motion", "--track": "Observation.track",
         "--outline": "Observation.outline", "--shard": "shards", "--part": "folder", "--merge": "cluster.sweep_command", "--missing": "cluster.missing",
+        "--accuracy": "run", "--within": "run", "--resume": "run",
     }),
     "advise": (["advise", "System.design"], {f"--{name.replace('_', '-')}": name for name in ("trials", "angle1", "angle2", "rate", "runs", "identify", "globally", "by", "measure", "at_most")}),
     "poses": (["poses"], {
