@@ -40,12 +40,12 @@ impl SearchFile {
     ///
     /// # Errors
     /// In words: it cannot be read, is damaged, or is of another question.
-    pub fn open(path: &Path, question: u64, parameters: usize) -> Result<SearchFile, String> {
+    pub fn open(path: &Path, question: u64, bounds: &[[f64; 2]]) -> Result<SearchFile, String> {
         let searches = match path.try_exists() {
             Ok(false) => BTreeMap::new(),
             _ => {
                 let text = read_text(path, MOST).map_err(|why| why.to_string())?;
-                read(&text, question, parameters)?
+                read(&text, question, bounds)?
             }
         };
         let states = Mutex::new(Kept { searches, written: None, failed: None });
@@ -136,7 +136,7 @@ fn line(state: &SearchState) -> String {
     format!("{end} {} {} {why}", state.steps, numbers.join(" ")).trim_end().to_owned()
 }
 
-fn read(text: &str, question: u64, parameters: usize) -> Result<BTreeMap<usize, SearchState>, String> {
+fn read(text: &str, question: u64, bounds: &[[f64; 2]]) -> Result<BTreeMap<usize, SearchState>, String> {
     let mut lines = text.lines();
     let head = lines.next().and_then(|line| line.strip_prefix(HEAD)).ok_or("it is no file of searches")?;
     if u64::from_str_radix(head.trim(), 16) != Ok(question) {
@@ -144,22 +144,27 @@ fn read(text: &str, question: u64, parameters: usize) -> Result<BTreeMap<usize, 
     }
     let one = |(place, line): (usize, &str)| {
         search(line)
-            .filter(|(_, state)| is_whole(state, parameters))
+            .filter(|(_, state)| is_whole(state, bounds))
             .ok_or_else(|| format!("line {} of it is damaged", place + 2))
     };
     lines.enumerate().map(one).collect()
 }
 
-/// Whether a state has all its numbers.
-fn is_whole(state: &SearchState, parameters: usize) -> bool {
+/// Whether a state has all its numbers, within the bounds of the parameters, and a damping that leads on.
+fn is_whole(state: &SearchState, bounds: &[[f64; 2]]) -> bool {
     let places = [&state.start, &state.place, &state.best];
+    let is_within = |place: &&Vec<f64>| {
+        let all = place.iter().zip(bounds);
+        place.len() == bounds.len() && all.into_iter().all(|(x, [low, high])| (low..=high).contains(&x))
+    };
+    let are_numbers = state.objectives.iter().all(|x| x.is_finite());
+    // a damping that does not grow would be tried for ever
+    let [damping, growth] = state.damping;
+    let grows = damping > 0.0 && damping.is_finite() && growth >= 2.0 && growth.is_finite();
     match &state.end {
         Some(StartEnd::NoStart(_)) => places.iter().all(|place| place.is_empty()),
-        _ => {
-            let has_all =
-                |place: &&Vec<f64>| place.len() == parameters && place.iter().all(|x| x.is_finite());
-            places.iter().all(has_all) && state.objectives.iter().chain(&state.damping).all(|x| x.is_finite())
-        }
+        Some(_) => places.iter().all(is_within) && are_numbers,
+        None => places.iter().all(is_within) && are_numbers && grows,
     }
 }
 
@@ -189,4 +194,37 @@ fn search(line: &str) -> Option<(usize, SearchState)> {
     };
     let (objectives, damping) = (objectives?, damping?);
     Some((number, SearchState { start, place, best, objectives, damping, steps, end }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_no_search_has_written_is_damaged() {
+        let bounds = [[0.0, 1.0], [-1.0, 1.0]];
+        let place = vec![0.5, 1.0];
+        let state = SearchState {
+            start: place.clone(),
+            place: place.clone(),
+            best: place,
+            objectives: [1.0, 1.0],
+            damping: [1e-3, 2.0],
+            steps: 3,
+            end: None,
+        };
+        let read_back = |state: &SearchState| search(&format!("7 {}", line(state)));
+        assert_eq!(read_back(&state), Some((7, state.clone())));
+        assert!(is_whole(&state, &bounds));
+        for damping in
+            [[0.0, 0.0], [0.0, 2.0], [-1.0, 2.0], [1e-3, 1.0], [f64::NAN, 2.0], [1e-3, f64::INFINITY]]
+        {
+            assert!(!is_whole(&SearchState { damping, ..state.clone() }, &bounds), "{damping:?}");
+        }
+        for place in [vec![0.5], vec![0.5, 2.0], vec![f64::NAN, 0.0], Vec::new()] {
+            assert!(!is_whole(&SearchState { place: place.clone(), ..state.clone() }, &bounds), "{place:?}");
+        }
+        let ended = SearchState { damping: [0.0; 2], end: Some(StartEnd::Converged), ..state };
+        assert!(is_whole(&ended, &bounds) && read_back(&ended).is_some());
+    }
 }

@@ -135,7 +135,8 @@ impl JointExperiments {
     pub fn searches(&self, path: &Path) -> Result<SearchFile, String> {
         let (scene, problem) = (&self.scene, self.problem());
         let question = question(problem, (scene.starts, scene.steps, scene.seed));
-        SearchFile::open(path, question, problem.parameters.len())
+        let bounds: Vec<[f64; 2]> = problem.parameters.iter().map(|one| one.scaled_bounds()).collect();
+        SearchFile::open(path, question, &bounds)
     }
 
     /// Simulates at the published values, searches from all starts, and determines which parameters are identifiable. Searches that are kept go on.
